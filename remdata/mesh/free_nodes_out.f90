@@ -2,8 +2,9 @@
 !>
 !> Contact holds the nodes of a side; between them a free side may be in the die, where this bends by a radius that is small beside
 !> the side. A node of the new mesh at such a place would press with all of its depth at once: a thousandth of a side is ten times
-!> what the penalty of PENETR allows, and more than the part can bear. So it stands on the die's surface. (What the contour follows
-!> beside an end of contact is left to contact_overlaps.)
+!> what the penalty of PENETR allows, and more than the part can bear. So it stands on the die's surface; one at the joint with a side
+!> that does not face the die, as on a line of symmetry, moves along that side. (What the contour follows beside an end of contact is
+!> left to contact_overlaps.)
 module free_nodes_out
   use closest_point, only: closest_point_t
   use die_closest_points, only: find_closest_point
@@ -23,6 +24,8 @@ module free_nodes_out
   real(wp), parameter :: deepest = 0.1_wp
   !> A node nearer than this to a point of contact is that point, over the side.
   real(wp), parameter :: same_place = 1.0e-6_wp
+  !> Sine of the least angle between a die and a side along which a node moves out of it.
+  real(wp), parameter :: least_sine = 0.3_wp
 
 contains
 
@@ -84,8 +87,9 @@ contains
       real(wp), intent(in) :: length       !! of the side [length]
       real(wp), intent(inout) :: move(2)   !! [length]
       type(closest_point_t) :: closest
+      real(wp) :: normal(2)
       logical :: over
-      integer :: g
+      integer :: g, other
 
       if (side_of(k) == 0 .or. in_contact(node)) return
       associate (contour => contours(mesh%sides(k)%boundary), x => mesh%coordinates(:, node))
@@ -94,15 +98,52 @@ contains
         end do
         do g = 1, size(scene%groups)
           if (scene%groups(g)%die == 0) cycle
-          if (is_deformable(scene%dies(scene%groups(g)%die)) .or. .not. contour%tags%on_group(g, side_of(k))) cycle
+          if (is_deformable(scene%dies(scene%groups(g)%die)) .or. .not. faces(k, g)) cycle
           associate (die => scene%dies(scene%groups(g)%die), pilot => pilots(:, scene%groups(g)%die))
             call find_closest_point(die, pilot, x, [1, size(die%pieces, 3)], .true., closest, over)
             if (.not. over .or. closest%d <= 0 .or. closest%d > deepest*length) cycle
-            move = -closest%d*turned(closest%normal, pilot(3))
+            normal = turned(closest%normal, pilot(3))
+            move = -closest%d*normal
+            other = side_beside(k, node)
+            if (other > 0) then
+              if (.not. faces(other, g)) move = along_side(other, normal, closest%d)
+            end if
           end associate
         end do
       end associate
     end subroutine find_way_out
+
+    !> The other side that ends at a node, 0 for a middle node.
+    pure function side_beside(k, node) result(other)
+      integer, intent(in) :: k, node
+      integer :: other
+
+      do other = size(mesh%sides), 1, -1
+        if (other /= k .and. any(mesh%sides(other)%nodes([1, 3]) == node)) return
+      end do
+    end function side_beside
+
+    !> The way out along another side; none where that hardly leads out.
+    pure function along_side(k, normal, depth) result(move)
+      integer, intent(in) :: k
+      real(wp), intent(in) :: normal(2), depth   !! of the die, into it [-]; [length]
+      real(wp) :: move(2), along(2), rate
+
+      along = mesh%coordinates(:, mesh%sides(k)%nodes(3)) - mesh%coordinates(:, mesh%sides(k)%nodes(1))
+      along = along/length_of(along)
+      rate = dot_product(along, normal)
+      move = 0
+      if (abs(rate) >= least_sine) move = -(depth/rate)*along
+    end function along_side
+
+    !> A free side faces the die of a group.
+    pure function faces(k, group) result(yes)
+      integer, intent(in) :: k, group
+      logical :: yes
+
+      yes = side_of(k) > 0
+      if (yes) yes = contours(mesh%sides(k)%boundary)%tags%on_group(group, side_of(k))
+    end function faces
 
   end subroutine move_free_nodes_out
 
