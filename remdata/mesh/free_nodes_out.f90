@@ -2,13 +2,13 @@
 !>
 !> Contact holds the nodes of a side; between them a free side may be in the die, where this bends by a radius that is small beside
 !> the side. A node of the new mesh at such a place would press with all of its depth at once: a thousandth of a side is ten times
-!> what the penalty of PENETR allows, and more than the part can bear. So it stands on the die's surface; one at the joint with a side
-!> that does not face the die, as on a line of symmetry, moves along that side. (What the contour follows beside an end of contact is
-!> left to contact_overlaps.)
+!> what the penalty of PENETR allows, and more than the part can bear. So it stands on the die's surface. One at the joint with a
+!> side that does not face the die, as on a line of symmetry, moves along that side. (What the contour follows beside an end of
+!> contact is left to contact_overlaps.)
 module free_nodes_out
   use closest_point, only: closest_point_t
   use die_closest_points, only: find_closest_point
-  use dies, only: is_deformable
+  use dies, only: is_deformable, place_on_nodes
   use kinds, only: wp
   use new_scene, only: middle_position
   use part_contour, only: contour_t
@@ -77,7 +77,11 @@ contains
         end associate
       end do
     end do
-    if (largest > 0) scene%mesh%coordinates = mesh%coordinates
+    if (.not. largest > 0) return
+    scene%mesh%coordinates = mesh%coordinates
+    do k = 1, size(scene%dies)
+      if (is_deformable(scene%dies(k))) call place_on_nodes(mesh%coordinates, scene%dies(k))
+    end do
 
   contains
 
