@@ -14,12 +14,14 @@ module remesh_scene
   use contour_cuts, only: cut_is_due, make_cuts
   use contour_volume, only: volume_of_section
   use cuts, only: stage_of_cuts
+  use elastic_volume, only: unloaded_share
   use errors, only: error_t, exit_input, fail
   use exchange, only: write_checkpoint
   use fields, only: displacement_field, pilot_field, section_field
   use first_contours, only: contours_of_cards
   use fold_carry, only: carry_folds
   use fold_closing, only: close_folds
+  use free_nodes_out, only: move_free_nodes_out
   use kinds, only: pi, wp
   use material_interfaces, only: group_interfaces, interface_t, interfaces_of
   use mesh_choice, only: make_free_mesh, make_mesh, materials_of, may_be_free, needs_free_mesh, take_better_mesh
@@ -111,7 +113,7 @@ contains
     call requested_sizes(old, before, contours, first, options%same_sizes, sizes, learned)
     call mesh_bodies(old, before, contours, interfaces, seams, sizes, options, is_cut, plan, mesh, facts, error)
     if (allocated(error)) return
-    call lay_scene_on_mesh(old, contours, plan, mesh, new, facts, error)
+    call lay_scene_on_mesh(old, before%fields(pilot_field)%value, contours, plan, mesh, new, facts, error)
     if (allocated(error)) return
     call start_solution(new, after)
     if (first) then
@@ -119,7 +121,7 @@ contains
     else
       call carry_state(old, before, moved, contours, mesh, new, after, facts, error)
       if (allocated(error)) return
-      if (is_cut) call note_cuts(old, contours, facts, after)
+      if (is_cut) call note_cuts(old, before, contours, new, facts, after)
     end if
     call begin_task(facts, 'checkpoint', 'write')
     new%remesher = as_the_deck_says
@@ -160,15 +162,17 @@ contains
     if (old%plane_state == axisymmetric) call put_on_axis(mesh%coordinates)
   end subroutine mesh_bodies
 
-  !> The scene on the new mesh: sides of bodies in contact are fitted to each other, folds closed.
-  subroutine lay_scene_on_mesh(old, contours, plan, mesh, new, facts, error)
+  !> The scene on the new mesh: sides of bodies in contact are fitted to each other, folds closed, free nodes moved out of dies.
+  subroutine lay_scene_on_mesh(old, pilots, contours, plan, mesh, new, facts, error)
     type(scene_t), intent(in) :: old
+    real(wp), intent(in) :: pilots(:, :)         !! (3, ndie) where they are now [length and radian]
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(plan_t), intent(in) :: plan
     type(new_mesh_t), intent(inout) :: mesh
     type(scene_t), intent(out) :: new
     type(remesh_facts_t), intent(inout) :: facts
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: moved
 
     call set_up_new_scene(old, contours, plan, mesh, new, error)
     if (allocated(error)) return
@@ -177,7 +181,9 @@ contains
     if (allocated(facts%contour%opened)) call close_folds(contours, facts%contour%opened, mesh, new)
     ! by the lengths that the sides have in the checkpoint, where it is read
     call choose_rules(new)
-    if (facts%fit > 0 .or. allocated(facts%contour%opened)) call check_shape(mesh, facts%mesh, error)
+    moved = 0
+    if (.not. lacks_mesh(old)) call move_free_nodes_out(contours, pilots, mesh, new, moved)
+    if (facts%fit > 0 .or. moved > 0 .or. allocated(facts%contour%opened)) call check_shape(mesh, facts%mesh, error)
   end subroutine lay_scene_on_mesh
 
   !> Make the cuts that are due. The facts have what came of all cuts of the scene.
@@ -206,9 +212,11 @@ contains
     call make_cuts(old, before, contours, facts%cuts, error)
   end subroutine cut_bodies
 
-  !> What was cut off is no drift of the volume.
-  subroutine note_cuts(old, contours, facts, after)
-    type(scene_t), intent(in) :: old
+  !> What was cut off is no drift of the volume. It was pressed together otherwise than what is left: the web of a punched hole more
+  !> than the sheet around it. So both have a share of the first volume by their volumes without elastic strain.
+  subroutine note_cuts(old, before, contours, new, facts, after)
+    type(scene_t), intent(in) :: old, new
+    type(solution_t), intent(in) :: before
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(remesh_facts_t), intent(inout) :: facts
     type(solution_t), intent(inout) :: after
@@ -220,7 +228,7 @@ contains
       left = left + volume_of_section(contours(c)%boundary, after%fields(section_field)%value(:, 1))
     end do
     facts%removed = sum(facts%cuts%volume, mask=facts%cuts%generation == facts%generation)
-    share = left/(left + facts%removed)
+    share = left/(left + facts%removed)*unloaded_share(new, after)/unloaded_share(old, before)
     after%initial_volume = share*after%initial_volume
     after%work%grown = share*after%work%grown
     after%cuts = facts%cuts

@@ -18,6 +18,7 @@ module part_contour
   use contour_volume, only: shift_sides, volume_inside, volume_of_loop
   use die_closest_points, only: point_on_side
   use errors, only: error_t, exit_bug, exit_no_convergence, fail
+  use loop_group, only: group_of_element
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t, solid_elements
   use point_contacts, only: point_contact_t
@@ -324,7 +325,8 @@ contains
     type(boundary_curve_t) :: boundaries(size(contours))
     integer, allocatable :: on_die(:, :)
     logical, allocatable :: faces(:, :, :)
-    integer :: k, i, g
+    character(len=:), allocatable :: place
+    integer :: bodies(2), k, i, g
 
     allocate (on_die(maxval([1, (size(contours(k)%loop%sides, 2), k=1, size(contours))]), size(contours)), source=0)
     allocate (faces(size(scene%dies), size(on_die, 1), size(contours)), source=.false.)
@@ -339,10 +341,31 @@ contains
     end do
     call find_laps(boundaries, on_die, faces, laps)
     if (size(laps) == 0) return
+    place = 'x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2))
+    bodies = [(body_beside(laps(1)%boundaries(k), laps(1)%arcs(k)), k=1, 2)]
+    if (bodies(1) /= bodies(2)) then
+      call fail(error, exit_no_convergence, scene%groups(bodies(1))%name//' and '//scene%groups(bodies(2))%name// &
+                ' have gone through each other, at '//place//': their sides there are in no contact with each other', &
+                'name these sides of the one body in a die, DIE name SIDES place, and those of the other in its CNT2D')
+      return
+    end if
     call fail(error, exit_no_convergence, 'the contour has '//to_text(size(laps))//' lap'//trim(merge('s', ' ', size(laps) > 1)) &
-              //', the first at x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2)), &
+              //', the first at '//place, &
               'remesh earlier, before the sides fold over each other; sides of one body that meet need contact as those of two '// &
               'bodies do, DIE name SIDES place and CNT2D place name law, those beside the mouth of a fold too')
+
+  contains
+
+    !> The body behind an arc, by its group.
+    pure function body_beside(boundary, arc) result(group)
+      integer, intent(in) :: boundary, arc
+      integer :: group
+
+      associate (elements => contours(boundary)%loop%element)
+        group = group_of_element(scene, elements(min(boundaries(boundary)%arcs(arc)%side, size(elements))))
+      end associate
+    end function body_beside
+
   end subroutine refuse_laps
 
 end module part_contour

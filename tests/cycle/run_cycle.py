@@ -361,6 +361,27 @@ def remesher_fails_once(checks, deck):
         checks.that(not left, f"{what}: nothing is left of the try", left)
 
 
+def decision_is_killed(checks, deck, whole):
+    """The program that decides what comes next is killed: one line says so, and the same command goes on."""
+    folder, out = checks.path("killed-decision"), checks.path("killed-decision", "out")
+    os.makedirs(folder, exist_ok=True)
+    shutil.copy(CYCLE, folder)
+    once = os.path.join(folder, "once")
+    # after the first step on the second mesh, once
+    script = write(os.path.join(folder, "remdata"), f"""#!/bin/sh
+case "$*" in *"--next"*"--ran remdata"*) [ -e {once} ] || {{ : >{once}; kill -9 $$; }} ;; esac
+exec {REMDATA} "$@"
+""")
+    os.chmod(script, 0o755)
+    words = [os.path.join(folder, "lagacycle"), deck, "--out", out, "--threads", "1", "--quiet"]
+    for code, line in ((137, ["remdata --next was stopped by signal 9: the same command goes on"]), (DONE, [])):
+        result = subprocess.run(words, capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False,
+                                env=dict(os.environ, LAGAMINE=os.path.join(os.path.abspath(BIN), "lagamine"), REMDATA=REMDATA))
+        told = [one for one in result.stderr.splitlines() if "Killed" not in one]   # of the shell
+        checks.that(result.returncode == code and told == line, f"decision killed: {code}, in one line", (result.returncode, result.stderr))
+    ends_the_same(checks, deck, out, whole, "decision killed")
+
+
 def an_earlier_save(checks, draw, deck, seconds):
     """The mesh is made from the save before: rows and instants after it are made again, killed or not."""
     script = write(checks.path("bin", "choosy"), "#!/bin/sh\ncase $1 in *.end.1.h5) exec \"$REAL\" \"$@\" ;; esac\nexit 3\n")
@@ -527,6 +548,7 @@ def main():
     two_at_once(checks, deck, whole)
     foreign_processes(checks, deck, whole)
     remesher_fails_once(checks, deck)
+    decision_is_killed(checks, deck, whole)
     an_earlier_save(checks, draw, deck, seconds)
     all_ways_fail(checks, deck)
     solver_refuses(checks)

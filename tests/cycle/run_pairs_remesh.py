@@ -12,7 +12,7 @@ import sys
 
 sys.dont_write_bytecode = True
 from remeshed import ROOT, cycle, facts, jump, tries, within_limits  # noqa: E402
-from support import DONE, Checks, add_cards, deck_text, history, run, said, summary, write  # noqa: E402
+from support import DONE, NO_CONVERGENCE, Checks, add_cards, deck_text, history, run, said, summary, write  # noqa: E402
 
 FOLDER = os.path.join(ROOT, "decks", "press_fit")
 LAME = 210000*0.03/30*(40**2 - 30**2)*(30**2 - 20**2)/(2*30**2*(40**2 - 20**2))
@@ -263,9 +263,20 @@ def contours(checks):
     near(checks, rows["force_x_bore"][-1]/BORE, 100*(40**2/30**2 - 1)/(40**2/20**2 - 1), 0.01, "contours: Lame's pressure between the rings")
 
 
+def crossed(checks):
+    """One block is moved into another, and no contact is given: the remesher names both, and says what is missing."""
+    text = ("TITLE  A block in a block\nSTATE  PLSTN\nKINEM  LOG\n" + block("left", "m", (0, 0), (4, 4), 2, 2) + block("right", "m", (4.1, 0.5), (8, 3.5), 2, 2)
+            + "LAW    m ELA\n   210000. 0.3\nFIXED  left 4 XY\nMOVE   right 2 X go\nMOVE   right 1 Y rest\nLIC    go\n   0. 0.   1. -1.\nLIC    rest\n   0. 0.\n"
+            "STRAT  0.25 1.E-4 0.25   8 3\nSTOP   1.\nEND\n")
+    deck = write(checks.path("crossed.lag"), add_cards(text, remesh("0.5", "1. 2.") + "   TRIES 0\n"))
+    result = cycle(deck, checks.path("crossed"))
+    checks.that(result.returncode == NO_CONVERGENCE and "have gone through each other" in result.stderr and "left" in result.stderr
+                and "right" in result.stderr, "crossed: refused, with both names", said(result))
+
+
 def main():
     checks = Checks()
-    for case in (press_fit, drive_on, sliding, tool, rings, arcs, corner, patch, contours):
+    for case in (press_fit, drive_on, sliding, tool, rings, arcs, corner, patch, contours, crossed):
         case(checks)
     checks.end()
 
