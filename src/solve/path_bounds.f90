@@ -60,7 +60,7 @@ contains
       call equations%timers%stop(timer)
       return
     end if
-    call estimate_path(scene, equations, solution, dt, at_hand, is_last(), outcome, done)
+    call estimate_path(scene, equations, solution, dt, at_hand, is_last() .or. at_corner(scene, solution%time + dt), outcome, done)
     call equations%timers%stop(timer)
     if (.not. outcome%converged) return
     outcome%path%estimated = done
