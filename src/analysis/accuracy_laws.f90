@@ -21,6 +21,9 @@ module accuracy_laws
   !> that of smooth scenes, or that of scenes with contact, flow or phases.
   real(wp), parameter :: least_of_stress = 0.5_wp, least_order = 2*least_of_stress, largest_order = 2.0_wp, &
                          smooth_order = 2.0_wp, rough_order = 1.0_wp
+  !> Differences of forces, work and motions may fall by twice the order of the stress where all is smooth, as above; elsewhere
+  !> by the largest order that is believed. One that falls faster does so by chance, as where errors change their sign.
+  real(wp), parameter :: fastest_smooth = 2*smooth_order, fastest_rough = largest_order
   !> Where steps hardly change in number, little is seen of their errors: less than this is not believed.
   real(wp), parameter :: least_shortening = 0.25_wp
   !> The errors of two runs tell those of their steps where one has so many times the steps of the other.
@@ -94,6 +97,7 @@ contains
       now = difference(pilots(meshes(size(meshes) - 1)), pilots(meshes(size(meshes))), scales)
       if (law%order_measured) then
         before = difference(pilots(meshes(size(meshes) - 2)), pilots(meshes(size(meshes) - 1)), scales)
+        now = max(now, before/2**merge(fastest_smooth, fastest_rough, smooth))
         law%order(:n) = observed_order(before, now, least_order)
         law%coarse_order(:n) = law%order(:n)
       end if

@@ -193,7 +193,7 @@ contains
       end do
     else
       do i = 1, size(titles)
-        chosen(i) = is_usual(scene, name_of(titles(i)%s))
+        chosen(i) = is_usual(scene, name_of(titles(i)%s)) .and. .not. is_moment_at_rest(i)
       end do
       do i = 1, size(titles)
         if (.not. chosen(i)) cycle
@@ -210,6 +210,22 @@ contains
     end do
     if (size(columns) == 0) call fail(error, exit_input, 'ACCURACY: there is nothing to judge: no force, work or probe changes', &
                                       'give a PROBE card, or names after OF')
+
+  contains
+
+    !> The moment of a die that never turns: how large it is, and what an error of it is over that, hangs on where its pilot stands.
+    pure logical function is_moment_at_rest(i)
+      integer, intent(in) :: i   !! its column
+      character(len=*), parameter :: moment = 'moment_', rotation = 'rotation_'
+      integer :: k
+
+      is_moment_at_rest = index(titles(i)%s, moment) == 1
+      if (.not. is_moment_at_rest) return
+      do k = 1, size(titles)
+        if (name_of(titles(k)%s) == rotation//name_of(titles(i)%s(len(moment) + 1:))) is_moment_at_rest = .not. scales(k) > 0
+      end do
+    end function is_moment_at_rest
+
   end subroutine select_columns
 
   pure function is_usual(scene, name) result(yes)

@@ -4,9 +4,12 @@ module path_record
   use scene, only: scene_t
   implicit none
   private
-  public :: path_record_t, path_step_t
+  public :: path_record_t, path_step_t, stress_unknown
   public :: mean_square, motion_error, note_attempt, note_path_step, settle_path, start_path, &
             stress_before, stress_error, stress_scale, whole_stress_error
+
+  !> An error of the stress that is not known.
+  real(wp), parameter :: stress_unknown = -1.0_wp
 
   type :: path_step_t
     !> Its errors were estimated, or are taken from those of steps before and after it; one is above what the deck allows.
@@ -17,9 +20,10 @@ module path_record
     real(wp), allocatable :: error(:, :)
     !> Root of the elastic energy, its error by this step, and how much is left at the end of the step of an error at its start.
     real(wp) :: stress = 0.0_wp, stress_error = 0.0_wp, left = 1.0_wp
-    !> The error of the stress at the end of this step, with what it owes to that of the motion; 0 where it is not estimated
-    !> [energy^0.5].
-    real(wp) :: stress_whole = 0.0_wp
+    !> It ends at a corner of a multiplier, or with the run. Then the error of the stress at its end that has come since the corner
+    !> before, with what it owes to that of the motion; and how much is left of such an error at its start [energy^0.5].
+    logical :: ends_course = .false.
+    real(wp) :: stress_whole = 0.0_wp, whole_left = 1.0_wp
     !> Its errors, of motion and of stress, as they are bounded; it must be shortened by them.
     real(wp) :: sizes(2) = 0.0_wp
     logical :: too_long = .false.
@@ -39,8 +43,10 @@ module path_record
     real(wp), allocatable :: error(:, :)
     !> Root of the elastic energy: its recent mean, its error now, and the largest that was of that over the scale.
     real(wp) :: stress_recent = 0.0_wp, stress_error = 0.0_wp, stress_worst = 0.0_wp
-    !> The last root itself, and the error of the stress then with what it owes to that of the motion (0: not estimated).
-    real(wp) :: stress = 0.0_wp, stress_whole = 0.0_wp
+    !> The last root itself, and the error of the stress then with what it owes to that of the motion (0: not estimated); what is
+    !> left now of that at the last corner of a multiplier (one that was not known is taken to be the stress), and steps since then.
+    real(wp) :: stress = 0.0_wp, stress_whole = 0.0_wp, whole_before = 0.0_wp
+    integer :: course = 0
     !> Steps with an estimate, attempts shortened by it, and steps above what is allowed.
     integer :: estimated = 0, shortened = 0, above = 0
     !> Steps still to come whose lengths are not bounded by their errors, and how many after the next that is shortened in vain.
@@ -127,6 +133,7 @@ contains
 
     record%tried_length = 0
     record%stress_whole = 0
+    record%course = record%course + 1
     if (step%interpolated) then
       record%quiet = record%quiet - 1
       record%pending_time = record%pending_time + dt
@@ -161,7 +168,8 @@ contains
     record%moved_error = max(before + mean_square(record%error), 0.0_wp)
     record%stress_error = stress_before(step, dt, record) + step%stress_error
     record%stress = step%stress
-    record%stress_whole = step%stress_whole
+    record%whole_before = record%whole_before*step%whole_left**(1 + record%pending_time/dt)
+    if (step%ends_course) call end_course(step, record)
     call remember(step%stress, dt, time, record%stress_recent)
     record%stress_worst = max(record%stress_worst, stress_error(record))
     if (step%above) record%above = record%above + 1
@@ -174,6 +182,17 @@ contains
     record%quiet_bend = max(bends_more*step%bend, least_bend)
     if (.not. step%above) record%quiet = int(max(min(step%spare/ample - 1, real(most_quiet, wp)), 0.0_wp))
   end subroutine note_path_step
+
+  !> At a corner of a multiplier, or at the end: what has come since the corner before is added to what is left from there, in
+  !> squares, for both have what the error of the places makes of it.
+  pure subroutine end_course(step, record)
+    type(path_step_t), intent(in) :: step
+    type(path_record_t), intent(inout) :: record
+
+    record%course = 0
+    record%whole_before = hypot(record%whole_before, merge(step%stress_whole, step%stress, step%stress_whole >= 0))
+    if (record%whole_before < step%stress) record%stress_whole = record%whole_before
+  end subroutine end_course
 
   !> Go on with the recent mean.
   pure subroutine remember(stress, dt, time, mean)

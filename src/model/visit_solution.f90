@@ -145,6 +145,8 @@ contains
     call visitor%member('stress_worst', self%stress_worst, kept, '-', low=0.0_wp)
     call visitor%member('stress', self%stress, kept, 'energy^0.5', low=0.0_wp)
     call visitor%member('stress_whole', self%stress_whole, kept, 'energy^0.5', low=0.0_wp)
+    call visitor%member('whole_before', self%whole_before, kept, 'energy^0.5', low=0.0_wp)
+    call visitor%member('course', self%course, kept, low=0)
     call visitor%member('estimated', self%estimated, kept, low=0)
     call visitor%member('shortened', self%shortened, kept, low=0)
     call visitor%member('above', self%above, kept, low=0)

@@ -57,7 +57,7 @@ contains
     if (quiet) then
       call go_on_in_quiet(equations, solution%path, dt, outcome)
     else
-      call estimate_path(scene, equations, solution, dt, at_hand, last, outcome, done)
+      call estimate_path(scene, equations, solution, dt, at_hand, last .or. at_corner(scene, solution%time + dt), outcome, done)
     end if
     call equations%timers%stop(timer)
     if (quiet .or. .not. outcome%converged) return

@@ -21,7 +21,7 @@ module path_error
   use known_motion, only: proportion
   use path_record, only: mean_square, path_step_t, stress_scale
   use path_states, only: advance_beside, begin_beside, has_path, root_energy, unbalanced_forces
-  use path_stress, only: stress_with_motion
+  use path_stress, only: difference_of, stress_with_motion
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
   use solution, only: solution_t
@@ -39,19 +39,19 @@ module path_error
 contains
 
   !> Errors of a step that has converged. `done` is false where the two halves cannot be made.
-  subroutine estimate_path(scene, equations, solution, dt, at_hand, last, outcome, done)
+  subroutine estimate_path(scene, equations, solution, dt, at_hand, ends_course, outcome, done)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(in) :: solution   !! its trial state is that of the step
     real(wp), intent(in) :: dt        !! [time]
     logical, intent(in) :: at_hand    !! factors of a matrix of this step are
-    logical, intent(in) :: last       !! the run ends with this step: the error of the stress with the motion's is estimated
+    logical, intent(in) :: ends_course   !! the error of the stress with the motion's is estimated at the end of this step
     type(outcome_t), intent(inout) :: outcome
     logical, intent(out) :: done
     type(solution_t) :: other
     type(drivers_t), allocatable :: drivers(:)
     real(wp), dimension(equations%dofs%ndof) :: first, residual, error
-    real(wp) :: element_force(size(equations%buffers%force)), before, after
+    real(wp) :: element_force(size(equations%buffers%force)), before, after, small
     logical :: active(size(scene%groups))
     integer :: g
 
@@ -81,11 +81,14 @@ contains
         step%motion = mean_square(on_nodes(equations, outcome%du))
         allocate (step%error, source=on_nodes(equations, error))
         step%motion_error = mean_square(step%error)
-        if (last) call stress_with_motion(scene, equations, solution, active, dt, error, other%groups, outcome, step%stress_whole)
+        step%ends_course = ends_course
+        if (ends_course) &
+          call stress_with_motion(scene, equations, solution, active, dt, error, 2*residual, other%groups, outcome, &
+                                  step%stress_whole)
         if (allocated(outcome%error)) exit estimate
         call drop_round_off(equations, solution, step)
-        if (max(abs(step%stress_error), abs(solution%path%stress_error)) &
-            > least_share(scene%strategy)*stress_scale(solution%path, step%stress)) then
+        small = least_share(scene%strategy)*stress_scale(solution%path, step%stress)
+        if (max(abs(step%stress_error), abs(solution%path%stress_error), solution%path%whole_before) > small) then
           before = root_energy(scene, equations, active, solution, solution%groups, committed=.true.)
           call begin_beside(solution, other)
           do g = 1, size(active)
@@ -99,7 +102,11 @@ contains
           if (done .and. before > 0) then
             after = root_energy(scene, equations, active, other, other%groups)
             ! loads that go on do not make more of it
-            step%left = min(max((after - step%stress)/(enlarged*before), 0.0_wp), 1.0_wp)
+            if (max(abs(step%stress_error), abs(solution%path%stress_error)) > small) &
+              step%left = min(max((after - step%stress)/(enlarged*before), 0.0_wp), 1.0_wp)
+            after = root_energy(scene, equations, active, other, &
+                                difference_of(scene, active, other%groups, solution%groups, 1.0_wp))
+            step%whole_left = min(after/(enlarged*before), 1.0_wp)
           end if
           done = .true.
         end if
@@ -134,7 +141,7 @@ contains
     energy = 0.5_wp*solution%fields(displacement_field)%floor*motion
     if (step%motion_error <= motion) step%motion_error = 0
     if (abs(step%stress_error) <= sqrt(energy)) step%stress_error = 0
-    if (step%stress_whole <= sqrt(energy)) step%stress_whole = 0
+    if (step%stress_whole >= 0 .and. step%stress_whole <= sqrt(energy)) step%stress_whole = 0
   end subroutine drop_round_off
 
   !> Motion of the first half: velocities are linear in time, with the mean v(n) of the step before and v of this one in their

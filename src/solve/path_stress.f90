@@ -26,51 +26,62 @@ module path_stress
   use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: first_history
+  use path_record, only: stress_unknown
   use path_states, only: advance_beside, begin_beside, root_energy, unbalanced_forces
   use scene, only: plane_stress, scene_t
   use solution, only: group_state_t, solution_t
   use step_outcome, only: outcome_t
   implicit none
   private
-  public :: stress_with_motion
+  public :: difference_of, stress_with_motion
 
   !> Steps whose errors are carried on at most: what is left of older ones is a few percent where a body flows.
   integer, parameter :: most_steps = 8
   !> The share of the errors by which they are carried on.
   real(wp), parameter :: small = 1.0e-3_wp
+  !> An error that a step makes larger than this is none of the body: pressures that follow it and necks make a little of it.
+  real(wp), parameter :: largest_growth = 1.25_wp
+  !> A motion that should balance forces and makes so large a share of them the other way is none that the matrix can tell.
+  real(wp), parameter :: too_far = 0.5_wp
 
 contains
 
-  !> Root of the elastic energy of the error of the stress; 0 where one of the other states cannot be made.
-  subroutine stress_with_motion(scene, equations, solution, active, dt, error, halves, outcome, root)
+  !> Root of the elastic energy of the error of the stress; `stress_unknown` where one of the other states cannot be made, or errors
+  !> grow.
+  subroutine stress_with_motion(scene, equations, solution, active, dt, error, force, halves, outcome, root)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations    !! with factors of a matrix of the step
     type(solution_t), intent(in) :: solution         !! its trial state is that of the step
     logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
     real(wp), intent(in) :: dt                       !! [time]
     real(wp), intent(in) :: error(:)                 !! (ndof) of the motion of the step [unknown]
+    real(wp), intent(in) :: force(:)                 !! (ndof) that it balances [residual]
     type(group_state_t), intent(in) :: halves(:)     !! (ngroup) states by two halves, as trial states
     type(outcome_t), intent(inout) :: outcome
     real(wp), intent(out) :: root                    !! [energy^0.5]
     type(group_state_t) :: local(size(halves)), found(size(halves))
     type(drivers_t), allocatable :: drivers(:)
     type(solution_t) :: other
-    real(wp), dimension(size(error)) :: places, own, answer, residual
-    real(wp) :: share
+    real(wp), dimension(size(error)) :: places, own, answer, balanced, residual, after
+    real(wp) :: share, now, first
     integer :: term, nterm
     logical :: done
 
-    root = 0
+    root = stress_unknown
     local = difference_of(scene, active, halves, solution%groups, 2*small)
     own = small*error
+    balanced = small*force
     if (contact_differs(scene, solution)) then
       local = difference_of(scene, active, halves, solution%groups, 0.0_wp)
       own = 0
+      balanced = 0
     end if
     places = small*of_unknowns(equations, solution%path%error)
     allocate (drivers, source=equations%drivers)
     found = local
-    nterm = max(min(most_steps, solution%step), 1)
+    nterm = min(most_steps, solution%path%course + 1)
+    now = 0
+    first = 0
     do term = 1, nterm
       share = merge(0.0_wp, 1.0_wp, term == 1)
       if (term == nterm) share = share*solution%last_step/dt
@@ -83,10 +94,18 @@ contains
       call start()
       call advance_beside(scene, equations, active, drivers, outcome%du + own + answer, dt, other, done)
       if (.not. done) return
+      ! contact, which is in the matrix alone, takes a part of the forces, and no more than all
+      call unbalanced_forces(scene, equations, solution, outcome%du, after)
+      if (dot_product(after + balanced, answer) < -too_far*dot_product(residual, answer)) return
       found = difference_of(scene, active, other%groups, solution%groups, 1.0_wp)
       call add(local, found)
+      associate (before => share*now)
+        now = root_energy(scene, equations, active, other, found)
+        if (term == 1) first = now
+        if (now > largest_growth*before + first) return
+      end associate
     end do
-    root = root_energy(scene, equations, active, other, found)/small
+    root = now/small
 
   contains
 

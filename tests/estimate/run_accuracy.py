@@ -215,6 +215,33 @@ def none_of_supports(checks):
         checks.that("2 % asked of out, t\n" in file.read() and asked["met"] and asked["reached"]["error_pct"] <= 2, "the work of supports is not judged", asked)
 
 
+def moments_of_dies_that_turn(checks):
+    """Half of a block pressed by a die that only goes down: its moment is not judged. It is where the die turns."""
+    for turned in (False, True):
+        text = ("TITLE half a block pressed\nSTATE PLSTN\nKINEM LOG\nBLOCK part PL8LS 4 m\n   0. 0.   12. 0.   12. 8.   0. 8.\n   2 1.   2 1.\nLAW m ELA\n   1000. 0.3\n"
+                "LAW c COUL2D\n   PENETR 1.E-3   PHI 0.\nDIE up PILOT 0. 8.\n   SEGM 20. 8.   -20. 8.\nCNT2D part 3 up c\nFIXED part 1 Y\nFIXED part 4 X\n"
+                "LIC p\n   0. 0.   1. -.1\nMOVE up Y p\n" + ("MOVE up A p .01\n" if turned else "") + "STRAT 0.5 1.E-3 0.5 5 3\nACCURACY 5 %\nEND\n")
+        _, summary, _ = call(checks, "turned" if turned else "straight", text)
+        judged = list(summary["accuracy"]["asked"]["orders"])
+        checks.that(("moment_up" in judged) == turned and "force_y_up" in judged, f"moment of a die that {'turns' if turned else 'does not turn'}", judged)
+
+
+def order_of_two_meshes_is_no_end(checks):
+    """A beam that flows, 30 % off by the first two meshes: by order 1, which is taken of two, none would do. A third one tells."""
+    text = ("TITLE a beam bent\nSTATE PLSTS 5.\nKINEM LOG\nBLOCK beam PL8LS 4 m\n   0. 0.   60. 0.   60. 6.   0. 6.\n   8 1.   2 1.\nLAW m EPLA\n   200000. 0.3\n"
+            "   LINEAR 300. 2000.\nFIXED beam 4 XY\nTRACT beam 2 Y -14. q\nLIC q\n   0. 0.   1. 1.\nSTRAT 0.1 1.E-4 0.1 5 3\nPROBE tip NODE UY 60. 6.\n"
+            "ACCURACY 0.6 % OF tip\nEND\n")
+    history, summary, folder = call(checks, "bent", text)
+    told = summary["accuracy"]["asked"]
+    finest = os.path.join(folder, "finest")
+    subprocess.run([LAGAMINE, folder + ".lag", "--out", finest, "--threads", "1", "--quiet", "--fineness", f"{2*told['mesh']},0.5,1"], check=True)
+    run = Run.__new__(Run)
+    run.out = finest
+    true = run.read_history()["tip"]
+    error = 100*abs(history["tip"][-1]/true[-1] - 1)
+    checks.that(told["met"] and told["mesh"] > 1 and error <= 0.6, "the order of two meshes is no end: a beam to 0.6 %", (error, told))
+
+
 def steps_that_hardly_change(checks):
     """A bar cools; steps grow from a short first one, so that those of half the largest length are as many. Its true error, against steps of a
     hundredth, is below what was asked all the same."""
@@ -261,6 +288,8 @@ def main():
         told_where_it_is_not(checks)
         probe_beside_a_node(checks)
         none_of_supports(checks)
+        moments_of_dies_that_turn(checks)
+        order_of_two_meshes_is_no_end(checks)
         steps_that_hardly_change(checks)
         no_pilot_ends(checks)
     print("scene            asked %   true %  of               expected %  reached %  elements  mesh  steps  depth  steps: spent expected   seconds: spent expected  pilots")

@@ -20,6 +20,40 @@ EXPONENTS = {"factorisation": 1.5, "contact": 0.5}
 NORMS = "NORMS  PATH 0.04 RATE 0.008\n"
 
 
+TUBE = """TITLE  A tube that flows, then lets go
+STATE  AXISYM
+KINEM  LOG
+BLOCK  part PL8LS 4 m
+   40. 0.   100. 0.   100. 8.   40. 8.
+   4 2.   2 1.
+LAW    m EPLA
+   200000. 0.3
+   SWIFT 500. 0.005 0.15
+FIXED  part 1 3 Y
+PRES2D part 4 2 230. load
+LIC    load
+   0. 0.   1. 1.   1.3 0.
+STRAT  0.1 1.E-4 0.1   5 3
+END
+"""
+REST = """TITLE  A beam that is bent, then at rest
+STATE  PLSTS 5.
+KINEM  LOG
+BLOCK  part PL8LS 4 m
+   0. 0.   60. 0.   60. 6.   0. 6.
+   8 1.   2 1.
+LAW    m EPLA
+   200000. 0.3
+   LINEAR 300. 2000.
+FIXED  part 4 XY
+TRACT  part 2 Y -14. q
+LIC    q
+   0. 0.   1. 1.   1.0001 1.
+STRAT  0.1 1.E-4 0.1   5 3
+END
+"""
+
+
 class Closing(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -114,6 +148,26 @@ class Closing(unittest.TestCase):
             run, told = effectivity_table.made(scene, self.folder, 1, 1)
             true, _ = effectivity_table.error_of_steps(scene, run, effectivity_table.made(scene, self.folder, 1, 0.125)[0])
             self.assertTrue(0.5 < told["path"]["stress_pct"]/(100*true) < 2, (scene, told["path"], true))
+
+    def stress_of_steps(self, name, text, steps):
+        """What the table says of the stress by the path within steps [%], and the difference to steps of a thirty-second of the deck's."""
+        effectivity_table.SCENES[name] = (os.path.join(self.folder, name), "part", 200000.0, 0.3, [], (), None, ())
+        with open(os.path.join(self.folder, name + ".lag"), "w", encoding="utf-8") as file:
+            file.write(text)
+        run, told = effectivity_table.made(name, self.folder, 1, steps)
+        true, _ = effectivity_table.error_of_steps(name, run, effectivity_table.made(name, self.folder, 1, 1/32)[0])
+        return told["path"]["stress_pct"], 100*true
+
+    def test_stress_of_the_path_before_a_corner(self):
+        """A tube that flows under pressure, then lets go: its residual stress has the error of the way there, though no step since has one."""
+        told, true = self.stress_of_steps("let go", TUBE, 0.25)
+        self.assertTrue(0.5 < told/true < 2, (told, true))
+
+    def test_stress_of_the_path_at_rest(self):
+        """A beam at rest on its yield surface for a ten-thousandth of the time: the errors of its motion were carried on by a matrix that is not
+        that of the answer, to 900 000 %."""
+        told, true = self.stress_of_steps("rest", REST, 1)
+        self.assertTrue(0 < told < 10*true, (told, true))
 
 
 if __name__ == "__main__":

@@ -163,6 +163,8 @@ class Study(unittest.TestCase):
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "u"), "no such column; there are: time"),
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "t@1.3"), "no step of a run ends at this time, the nearest at 1"),
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "t@9"), "no step of a run ends at this time, the nearest at 4"),
+                               ((*deck, "--ladder", "step=.25,.5,1.", "--quantity", "t"), "from the coarsest to the finest, found 16 steps with step=.25 and 4 with step=1."),
+                               ((*deck, "--ladder", "n=4,2", "--quantity", "t"), "from the coarsest to the finest, found"),
                                ((*deck, "--ladder", "stop=1.,.5", "--quantity", "t"), "stop"),
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "t", "--jobs", "0"), "--jobs: expected 1 or more"),
                                (("nowhere.lag", "--ladder", "step=1.,.5", "--quantity", "t"), "nowhere.lag: cannot be read")):

@@ -9,10 +9,11 @@ from lagamine_report.program import Parser, Version, print_failure, refuse_to_re
 
 from .errors_of_ladder import judge
 from .ladders import Ladder, Rung, read_ladder, read_quantity
-from .runs import MARK, command_of, digest_of, is_there, make_runs, read_result
+from .runs import MARK, Result, command_of, digest_of, is_there, make_runs, read_result
 
 EXIT_CODES = "Exit codes: 0 done, 2 the deck or an option is refused, 3 a run did not reach its end (the tables name it), 5 the machine failed."
 NOT_AT_END = 3
+FEWER = 0.7      # of a number of steps: shorter ones, in a ladder that begins with the finest run; contact and events change it by less
 MODULES = ("numpy", "h5py", "matplotlib")
 
 
@@ -108,10 +109,26 @@ def hand_over(options, missing: Dict[str, List[str]], marks: Dict[str, Dict[str,
     return EXIT_DONE
 
 
+def refuse_backwards(ladder: Ladder, results: Sequence[Result]) -> None:
+    """A ladder of numbers that goes from the finest run to the coarsest one, which would be its truth: elements that become fewer, or as many with
+    fewer and fewer steps."""
+    ends = [result for result in results if result.code == EXIT_DONE]
+    if len(ends) < 2 or None in ladder.ratios():
+        return
+    counts = [(result.elements, result.steps) for result in ends]
+    pairs = list(zip(counts, counts[1:]))
+    for k, what in enumerate(("elements", "steps")):
+        if all(b[0] == a[0] and b[1] < FEWER * a[1] for a, b in pairs) if k else all(b[0] < a[0] for a, b in pairs):
+            raise ReportError(f"--ladder {ladder.name}: expected runs from the coarsest to the finest, found {counts[0][k]:g} {what} with {ends[0].rung.title} "
+                              f"and {counts[-1][k]:g} with {ends[-1].rung.title}", advice="give the values in the other order: the runs are there")
+
+
 def write_study(options, out: str, ladders: Sequence[Ladder], quantities) -> int:
     """Tables and picture; 3 where a run did not reach its end."""
     from .tables import as_csv, as_markdown, rows, work_precision
     results = {ladder.name: [read_result(rung, quantities) for rung in ladder.rungs] for ladder in ladders}
+    for ladder in ladders:
+        refuse_backwards(ladder, results[ladder.name])
     verdicts = {(ladder.name, quantity.text): judge([result.values[quantity.text] for result in results[ladder.name]], ladder.ratios(),
                                                     [result.seconds for result in results[ladder.name]], quantity.exact)
                 for ladder in ladders for quantity in quantities}
