@@ -4,7 +4,7 @@ module cards_laws
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use kinds, only: wp
-  use law_api, only: contact_law, kind_names, law_line_t, law_t, line_choice, line_pairs, parameter_t
+  use law_api, only: contact_law, kind_names, law_line_t, law_t, line_choice, line_pairs, number_count, parameter_t
   use law_checks, only: check_alike, check_numbers, refuse_without_temperatures
   use law_registry, only: law_names
   use materials, only: material_t
@@ -58,10 +58,18 @@ contains
         end if
       end associate
       call close_card(draft, cursor, deck%cards(i))
-      ! a law whose card is wrong may lack numbers: no other card goes by it
-      if (cursor%failed()) draft%scene%materials(n)%law_id = 0
+      call leave_without_numbers(draft%laws, draft%scene%materials(n))
     end do
   end subroutine read_laws
+
+  !> A law whose card is wrong may lack numbers: no other card goes by it then.
+  pure subroutine leave_without_numbers(laws, material)
+    type(law_t), intent(in) :: laws(:)   !! (nlaw)
+    type(material_t), intent(inout) :: material
+
+    if (material%law_id == 0) return
+    if (size(material%values) /= number_count(laws(material%law_id))) material%law_id = 0
+  end subroutine leave_without_numbers
 
   pure function count_cards(deck, keyword) result(n)
     type(deck_t), intent(in) :: deck

@@ -10,7 +10,7 @@ module cards_sides
   use diagnostics, only: diagnostics_t
   use dies, only: is_deformable
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter, law_of_material
+  use law_api, only: contact_law, find_parameter, is_complete, law_of_material
   use quadrature, only: rule_along, rule_control, rule_of_number, rule_t
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
@@ -286,7 +286,7 @@ contains
       associate (material => draft%scene%materials(draft%owner(sides(2, k))))
         if (material%law_id == 0) cycle
         associate (law => draft%laws(material%law_id))
-          if (.not. associated(law%elastic)) cycle
+          if (.not. associated(law%elastic) .or. .not. is_complete(law, material)) cycle
           temperature = 0
           if (allocated(material%temperatures)) temperature = material%temperatures(1)
           call law%elastic(material, temperature, young, poisson)

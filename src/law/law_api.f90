@@ -18,8 +18,8 @@ module law_api
   public :: law_t, law_line_t, parameter_t, driver_t
   public :: law_update_i, law_slide_i, law_flow_i, law_check_i, law_elastic_i, law_conduct_i
   public :: law_store_i, law_swell_i, law_release_i, law_friction_i
-  public :: parameter, law_line, find_parameter, law_of_material, asks_for, is_needed, has_symmetric_tangent, &
-            tangent_rows
+  public :: parameter, law_line, find_parameter, law_of_material, asks_for, is_complete, is_needed, number_count
+  public :: has_symmetric_tangent, tangent_rows
   public :: driver_count, driver_temperature
   public :: row_of_volume, row_of_work
   public :: law_done, law_not_converged
@@ -339,6 +339,30 @@ contains
     end do
     k = 0
   end function find_parameter
+
+  !> Numbers that a card of the law gives: its parameters, and one for each choice among lines.
+  pure function number_count(law) result(n)
+    type(law_t), intent(in) :: law
+    integer :: n, i
+    logical :: choosing
+
+    n = 0
+    choosing = .false.
+    do i = 1, size(law%lines)
+      if (law%lines(i)%kind == line_choice .and. .not. choosing) n = n + 1
+      choosing = law%lines(i)%kind == line_choice
+      n = n + size(law%lines(i)%parameters)
+    end do
+  end function number_count
+
+  !> A material has all the numbers of its law, and the steel of a law that has one: its card was read without mistakes.
+  pure function is_complete(law, material) result(yes)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = size(material%values) == number_count(law) .and. (allocated(material%steel) .or. .not. law%of_steel)
+  end function is_complete
 
   !> Drivers of a law, the temperature among them.
   pure function driver_count(law) result(n)
