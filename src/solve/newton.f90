@@ -40,8 +40,8 @@ module newton
   !> (exchange_in_turns), or after so many exchanges.
   real(wp), parameter :: near_change = 5.0e-3_wp
   integer, parameter :: most_exchanges = 12
-  !> The first motion is taken where it is found by this share of the most iterations.
-  real(wp), parameter :: sure_way = 0.5_wp
+  !> The first motion is taken where no more corrections than this share of the most iterations went too far.
+  real(wp), parameter :: sure_way = 0.25_wp
 
 contains
 
@@ -439,7 +439,7 @@ contains
       end if
       if (outcome%converged .and. is_lost_way()) then
         outcome%converged = .false.
-        outcome%reason = to_text(outcome%first_iterations)//' iterations in the first step: it may have lost its way'
+        outcome%reason = to_text(outcome%iterations)//' iterations in the first step: it may have lost its way'
       end if
       if (outcome%converged .and. outcome%iterations > 0) then
         call ways_to_leave(scene, equations, solution, shift%value > 0, outcome%unstable, outcome%error)
@@ -452,14 +452,15 @@ contains
       call put_back(made, solution)
     end subroutine conclude
 
-    !> The first motion of all was found by many corrections. No motion before it says where the way leads: of a slender part past its
-    !> load of buckling there are several equilibria, all of them stable, and many corrections may end in any of them.
+    !> The first motion of all was found by many corrections that went too far. No motion before it says where the way leads: of a
+    !> slender part past its load of buckling there are several equilibria, all of them stable, and such corrections may end in any.
+    !> (Those that find contact are taken whole.)
     function is_lost_way() result(is)
       logical :: is
 
       is = equations%mode == mode_advance .and. equations%solves(equations%now)%own(displacement_field) .and. &
            .not. (solution%last_step > 0 .or. present(left) .or. equations%downhill .or. is_shortest(scene, dt))
-      if (is) is = outcome%first_iterations > sure_way*scene%strategy%max_iterations
+      if (is) is = count(outcome%history%line_search < 1) > sure_way*scene%strategy%max_iterations
     end function is_lost_way
 
   end subroutine find_equilibrium
