@@ -12,7 +12,8 @@
 !> Where points are about to turn from loading to unloading, or the other way, every short search
 !> stays on this side of the turn, with the same matrix: the iteration would not end. Hence the
 !> caller may ask for the whole correction, whatever the residual (the watchdog of R.M. Chamberlain
-!> et al., Math. Programming Study 16 (1982) 1-17): beyond the turn the matrix is the right one.
+!> et al., Math. Programming Study 16 (1982) 1-17): beyond the turn the matrix is the right one. Not one longer than the motion of
+!> the step: it comes of a matrix that hardly resists it, as where all points that hold a part are about to slip.
 !>
 !> Where points of contact change to and fro, the corrections from the states on both sides of the change go too far
 !> in turns; the caller may ask for a closer search, which stops between them.
