@@ -107,7 +107,7 @@ contains
           cycle
         end if
         if (.not. (plan%divisible .and. plan%law%space_known)) exit
-        ! an order that is only taken does not say that no mesh will do
+        ! an order that is assumed, not measured, does not say that no mesh will do
         if (.not. (plan%fineness%mesh > 2*plan%law%mesh .or. .not. (plan%met .or. plan%law%order_measured))) exit
         call pilot(2*plan%law%mesh, 1.0_wp, 1.0_wp, there)
         if (.not. there) exit
