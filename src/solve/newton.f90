@@ -18,6 +18,7 @@ module newton
   use heat_correction, only: follow_content, is_steep
   use iteration_history, only: caught, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, &
                                iteration_t, judge, was_given_time, went_round
+  use jumped_bodies, only: has_jumped
   use kinds, only: wp
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along
@@ -40,7 +41,8 @@ module newton
   !> (exchange_in_turns), or after so many exchanges.
   real(wp), parameter :: near_change = 5.0e-3_wp
   integer, parameter :: most_exchanges = 12
-  !> The first motion is taken where no more corrections than this share of the most iterations went too far.
+  !> The first motion is taken where no more corrections than this share of the most iterations went too far; a motion out of dies
+  !> where no more were made.
   real(wp), parameter :: sure_way = 0.25_wp
 
 contains
@@ -439,7 +441,8 @@ contains
       end if
       if (outcome%converged .and. is_lost_way()) then
         outcome%converged = .false.
-        outcome%reason = to_text(outcome%iterations)//' iterations in the first step: it may have lost its way'
+        outcome%reason = to_text(outcome%iterations)//' iterations, '//trim(merge('in which a part jumped free of its dies', &
+                            'in the first step                      ', solution%last_step > 0))//': they may have lost their way'
       end if
       if (outcome%converged .and. outcome%iterations > 0) then
         call ways_to_leave(scene, equations, solution, shift%value > 0, outcome%unstable, outcome%error)
@@ -452,15 +455,21 @@ contains
       call put_back(made, solution)
     end subroutine conclude
 
-    !> The first motion of all was found by many corrections that went too far. No motion before it says where the way leads: of a
-    !> slender part past its load of buckling there are several equilibria, all of them stable, and such corrections may end in any.
-    !> (Those that find contact are taken whole.)
+    !> The first motion was found by many corrections that went too far: none before it says where the way leads, and of a slender
+    !> part past its load of buckling there are several equilibria, all stable; such corrections may end in any (those that find
+    !> contact are taken whole). A later one was found by many corrections at the end of which a part has jumped out of its dies.
     function is_lost_way() result(is)
       logical :: is
 
       is = equations%mode == mode_advance .and. equations%solves(equations%now)%own(displacement_field) .and. &
-           .not. (solution%last_step > 0 .or. present(left) .or. equations%downhill .or. is_shortest(scene, dt))
-      if (is) is = count(outcome%history%line_search < 1) > sure_way*scene%strategy%max_iterations
+           .not. (present(left) .or. equations%downhill .or. is_shortest(scene, dt))
+      if (.not. is) return
+      if (solution%last_step > 0) then
+        is = outcome%iterations > sure_way*scene%strategy%max_iterations
+        if (is) is = has_jumped(scene, equations, solution, dt, external)
+      else
+        is = count(outcome%history%line_search < 1) > sure_way*scene%strategy%max_iterations
+      end if
     end function is_lost_way
 
   end subroutine find_equilibrium
