@@ -25,7 +25,7 @@ module axis_contact
   use law_api, only: contact_open, law_t
   use materials, only: material_t
   use plane_vectors, only: turned
-  use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_t
+  use rigid_contact, only: closest_or_followed, is_kept, ndof, place_point, press, side_t
   use sections, only: thickness_at
   implicit none
   private
@@ -178,15 +178,16 @@ contains
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: disc_point
-    real(wp) :: allowed, before(ndof), dallowed(ndof), n(2), lever(2), pressure
+    real(wp) :: allowed, before(ndof), dallowed(ndof), n(2), lever(2), pressure, depth
     logical :: by_next
 
     allowed = own_share*allowed_penetration(material)*side%length
     by_next = .false.
     if (next%piece > 0) by_next = deeper*next%d > allowed
     if (by_next) allowed = deeper*next%d
-    pressure = committed(at_augmentation) + side%penalty(1)*(closest%d - allowed)
-    if (.not. pressure > 0) then
+    depth = closest%d
+    if (is_kept(side, committed)) depth = committed(at_penetration)
+    if (.not. committed(at_augmentation) + side%penalty(1)*(depth - allowed) > 0) then
       ! its gap is known
       trial([at_penetration, at_piece, at_xi]) = [closest%d, real(closest%piece, wp), closest%xi]
       return
@@ -199,6 +200,8 @@ contains
     before = force
     call press(law, material, drivers, side, place, disc_point, closest, allowed, disc, committed, trial, force, stiffness)
     if (.not. (side%tangent .and. by_next) .or. nint(trial(at_status)) == contact_open) return
+    pressure = committed(at_augmentation) + side%penalty(1)*(closest%d - allowed)
+    if (.not. abs(pressure) > 0) return
     n = turned(next%normal, side%pilot(3, 2))
     lever = beside%x - side%pilot(1:2, 2)
     dallowed = matmul(n, beside%dx(:, :ndof))

@@ -20,7 +20,7 @@ module corner_contact
   use law_api, only: contact_open, law_t
   use materials, only: material_t
   use plane_vectors, only: turned
-  use rigid_contact, only: drift_t, ndof, nodes_in_axes, outer, place_point, press, side_t
+  use rigid_contact, only: drift_t, is_kept, ndof, nodes_in_axes, outer, place_point, press, side_t
   use shape_functions, only: line3
   use side_corners, only: closest_at_corner, corner_t, deepest_corner
   implicit none
@@ -166,13 +166,16 @@ contains
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
     type(drift_t) :: drift
-    real(wp) :: allowed, share, before(ndof), toward_end
+    real(wp) :: allowed, share, before(ndof), toward_end, depth
 
     call place_point(side, corner%place, point)
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     share = share_of_corner(corner%place, of_body=.false.)
     allowed = corner_share*allowed_penetration(material)*side%length
-    if (.not. (committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0 .and. share > 0)) then
+    ! what is kept in contact answers to the depth at the start of the step (contact_point)
+    depth = corner%d
+    if (is_kept(side, committed)) depth = committed(at_penetration)
+    if (.not. (committed(at_augmentation) + side%penalty(1)*(depth - allowed) > 0 .and. share > 0)) then
       ! its gap is known; at the very end of the side the next one has it
       trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
       return

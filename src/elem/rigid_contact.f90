@@ -19,7 +19,7 @@ module rigid_contact
   implicit none
   private
   public :: side_t, drift_t, place_point, press, meet, outer, closest_or_followed, motion_of_depth, nodes_in_axes, side_at_start
-  public :: ndof
+  public :: is_kept, ndof
 
   !> Local unknowns: x of the side's nodes, y of them, pilot x, y, angle, section; the last three are
   !> there in generalised plane strain only.
@@ -61,6 +61,15 @@ contains
     start%du = 0
     start%pilot(:, 2) = side%pilot(:, 1)
   end function side_at_start
+
+  !> The contact of a place of a side is kept: closed at the start of the step, its law is linearised at the depth that it had.
+  pure function is_kept(side, committed) result(yes)
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: committed(:)   !! (nstate) of the place [unit of each component]
+    logical :: yes
+
+    yes = side%kept .and. nint(committed(at_status)) /= contact_open
+  end function is_kept
 
   !> Nodes of a side in the axes of the pilot, at the end of the step.
   pure function nodes_in_axes(side) result(nodes)
