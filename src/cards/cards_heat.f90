@@ -295,9 +295,9 @@ contains
       if (f > 0) f = merge(0, f, draft%scene%fields(f)%given)
       if (f == 0) call cursor%fail('no body of this scene has a temperature among its unknowns (PL8TM)')
       associate (strategy => draft%scene%strategy)
-        if ((strategy%scheme == scheme_tr_bdf2 .or. strategy%time_tolerance > 0) .and. strategy%coupling == coupling_monolithic &
+        if (strategy%scheme == scheme_tr_bdf2 .and. strategy%coupling == coupling_monolithic &
             .and. count(draft%scene%fields%declared) > 1) &
-          call cursor%fail('TRBDF2 and TOL are for temperatures that are solved for alone: not with SOLVE MONOLITHIC')
+          call cursor%fail('TRBDF2 is for temperatures that are solved for alone: with SOLVE MONOLITHIC take THETA 1. TOL')
       end associate
     end if
     call close_card(draft, cursor, deck%cards(card))

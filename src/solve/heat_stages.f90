@@ -25,7 +25,7 @@ module heat_stages
   use torch_steps, only: torch_step
   implicit none
   private
-  public :: is_heat_alone, solve_heat
+  public :: evaluation_t, is_heat_alone, judge, keep_evaluation, return_to, solve_heat
 
   !> The weights of the stages, the shares of the step at which they end, and the weights of the error.
   real(wp), parameter :: weights(0:2) = [weight, weight, diagonal]
@@ -250,7 +250,7 @@ contains
   subroutine judge(scene, solution, dt, outcome)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: dt   !! [time]
     type(outcome_t), intent(inout) :: outcome
     real(wp) :: factor, order
     logical :: two_stages
@@ -286,6 +286,7 @@ contains
     outcome%linear_residual = max(outcome%linear_residual, earlier%linear_residual)
   end subroutine add_iterations
 
+  !> Forces and sums of the evaluation before, to be returned to after others.
   subroutine keep_evaluation(equations, kept)
     type(equations_t), intent(in) :: equations
     type(evaluation_t), intent(out) :: kept
@@ -294,6 +295,7 @@ contains
                         equations%heat_released, equations%source)
   end subroutine keep_evaluation
 
+  !> They are those of the evaluation that was kept.
   subroutine return_to(kept, equations)
     type(evaluation_t), intent(in) :: kept
     type(equations_t), intent(inout) :: equations

@@ -43,6 +43,9 @@ module path_stress
   real(wp), parameter :: largest_growth = 1.25_wp
   !> A motion that should balance forces and makes so large a share of them the other way is none that the matrix can tell.
   real(wp), parameter :: too_far = 0.5_wp
+  !> An error below this share of the stress is not judged by either: where a step errs in round-off alone, as in an elastic hold,
+  !> the next term may well be larger, and is as nothing still.
+  real(wp), parameter :: negligible = 1.0e-4_wp
 
 contains
 
@@ -63,7 +66,7 @@ contains
     type(drivers_t), allocatable :: drivers(:)
     type(solution_t) :: other
     real(wp), dimension(size(error)) :: places, own, answer, balanced, residual, after
-    real(wp) :: share, now, first
+    real(wp) :: share, now, before, first
     integer :: term, nterm
     logical :: done
 
@@ -96,14 +99,14 @@ contains
       if (.not. done) return
       ! contact, which is in the matrix alone, takes a part of the forces, and no more than all
       call unbalanced_forces(scene, equations, solution, outcome%du, after)
-      if (dot_product(after + balanced, answer) < -too_far*dot_product(residual, answer)) return
       found = difference_of(scene, active, other%groups, solution%groups, 1.0_wp)
       call add(local, found)
-      associate (before => share*now)
-        now = root_energy(scene, equations, active, other, found)
-        if (term == 1) first = now
-        if (now > largest_growth*before + first) return
-      end associate
+      before = share*now
+      now = root_energy(scene, equations, active, other, found)
+      if (term == 1) first = now
+      if (.not. now > small*negligible*outcome%path%stress) cycle
+      if (dot_product(after + balanced, answer) < -too_far*dot_product(residual, answer)) return
+      if (now > largest_growth*before + first) return
     end do
     root = now/small
 

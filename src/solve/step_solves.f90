@@ -9,6 +9,7 @@ module step_solves
   use fields, only: displacement_field
   use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
   use first_step_parts, only: solve_motion
+  use heat_in_system, only: estimate_heat_in_system
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
   use known_motion, only: proportion
@@ -102,6 +103,7 @@ contains
         outcome%of_heat = .true.
       else
         call solve_motion(scene, equations, solution, dt, outcome)
+        call estimate_heat_in_system(scene, equations, solution, dt, outcome)
       end if
       return
     end if

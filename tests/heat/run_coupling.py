@@ -10,10 +10,13 @@ usage: run_coupling.py [-v] [-k]
 - `wall`: a scene of heat alone has no displacements, and no state of points.
 - `tube`: of a steel quenched in its bore, MONOLITHIC: where temperatures alone are out of balance at first, and the motion follows them, no
   correction counts as one past a limit point, and none is searched to death: no step is cut back.
+- `judged`: the same tube; the error in time that MONOLITHIC states is that of CONVERGE, and within a factor 2 of what shorter steps
+  change, without `TOL` and with it.
 - `billet`: hot, pressed and remeshed twice by lagacycle; the content of heat, the integral of T over the volume, is that of the old
   mesh to 1e-3, and temperatures stay within their old bounds to 1e-3 of their range (shape functions of 8 nodes pass between nodes).
 """
 import glob
+import json
 import os
 import re
 import shutil
@@ -254,6 +257,29 @@ def tube(checks):
             checks.small(abs(rows["outside"][-1]/137 - 1), 0.02, f"tube, steps of {step}: hoop stress")
 
 
+def judged(checks):
+    """The error in time of the heat, stated with the motion in one system and in turns: on the same steps, and in the end against short ones."""
+    def stated(name, way, first, longest, bound):
+        """Errors that a run states, and its mean temperature at the end."""
+        text = TUBE.format(step=longest).replace("SOLVE  MONOLITHIC\n", f"SOLVE  {way}\n{bound}PROBE  mean MEAN T bar\n")
+        out = os.path.join(checks.folder, f"judged-{name}-{way}")
+        if not call(checks, write(out + ".lag", text.replace("STRAT  0.01", f"STRAT  {first}")), out):
+            return None, np.nan
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            return json.load(file)["accuracy"].get("heat"), history(out)["mean"][-1]
+
+    _, mean = stated("short", "MONOLITHIC", 0.01, 0.05, "")
+    for name, first, longest, bound in (("steps of 0.5", 0.5, 0.5, ""), ("TOL 0.3", 0.01, 2, "THETA  1. TOL 0.3\n")):
+        folder = name.replace(" ", "_")
+        turns, _ = stated(folder, "CONVERGE", first, longest, bound)
+        system, found = stated(folder, "MONOLITHIC", first, longest, bound)
+        if not checks.that(bool(system and turns), f"judged, {name}: the error in time is stated", system):
+            continue
+        for which in ("end", "largest"):
+            checks.small(abs(system[which]/turns[which] - 1), 1e-4, f"judged, {name}: {which}, as in turns")
+        checks.that(0.5*abs(found - mean) < system["end"] < 2*abs(found - mean), f"judged, {name}: error at the end, {found - mean:.3g} found", system["end"])
+
+
 def main():
     checks = Checks()
     decks = {way: write(os.path.join(checks.folder, f"bar_{way}.lag"), BAR.format(solve=way)) for way in WAYS}
@@ -263,6 +289,7 @@ def main():
     quadratic(checks, os.path.join(checks.folder, "MONOLITHIC-one"))
     heat_alone(checks, os.path.join(checks.folder, "wall-one"))
     tube(checks)
+    judged(checks)
     remeshed(checks)
     checks.end()
 
