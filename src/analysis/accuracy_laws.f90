@@ -7,6 +7,10 @@
 !> Trans. R. Soc. A 210 (1911) 307-357); a third mesh gives q. Errors in time are of the order of the scheme in the length
 !> that steps have, those of the penetration of order 1, as it is the pressure over the penalty. Of a quantity the three are added,
 !> as if they had one sign.
+!>
+!> A penetration that is allowed as a share of the element's side falls with the mesh: twice as many elements along a line halve it.
+!> What it adds to the values is taken away from them before meshes are compared; otherwise every difference of two meshes
+!> would be of order 1, however fast the errors of the elements fall.
 module accuracy_laws
   use accuracy_rules, only: fineness_t
   use cost_file, only: ntask
@@ -61,34 +65,46 @@ module accuracy_laws
     real(wp), allocatable :: coarse_order(:)      !! (nquantity) [-]
     !> With the steps and the penetrations of the deck.
     real(wp), allocatable :: time(:), depth(:)    !! (nquantity) [-]
+    !> The latter on a mesh with so many times the elements of the deck along a line, and its order in the size of the elements.
+    real(wp) :: depth_mesh = 1.0_wp, depth_order = 0.0_wp
     !> Over the factor that is asked of the lengths of steps.
     real(wp) :: time_order = 1.0_wp
     !> The order in space was measured by three meshes; there are two meshes at all.
     logical :: order_measured = .false., space_known = .false.
+    !> Differences between the three meshes fall more slowly than errors of the least order that is believed, or grow: the meshes
+    !> are too coarse to show how errors fall.
+    logical, allocatable :: hidden(:)             !! (nquantity)
   end type accuracy_law_t
 
 contains
 
   !> Of quantities whose ranges are known. Pilots are ordered by their mesh where they differ in that alone.
-  pure subroutine measure_laws(pilots, scales, with_stress, smooth, time_order, law)
-    type(sample_t), intent(in) :: pilots(:)   !! (npilot)
+  pure subroutine measure_laws(runs, scales, with_stress, smooth, of_sides, time_order, law)
+    type(sample_t), intent(in) :: runs(:)     !! (npilot)
     real(wp), intent(in) :: scales(:)         !! (ncolumn) [unit of each column]
     logical, intent(in) :: with_stress        !! the error of the stress is the last quantity
     logical, intent(in) :: smooth             !! no contact, flow or phases
+    logical, intent(in) :: of_sides           !! penetrations are allowed as shares of the sides of elements
     real(wp), intent(in) :: time_order        !! of the errors in time
     type(accuracy_law_t), intent(out) :: law
+    type(sample_t) :: pilots(size(runs))
     integer, allocatable :: meshes(:)
     real(wp) :: now(size(scales)), before(size(scales))
     integer :: k, n, first, longer, shorter
 
     n = size(scales) + merge(1, 0, with_stress)
     allocate (law%space(n), law%time(n), law%depth(n), source=0.0_wp)
+    allocate (law%hidden(n), source=.false.)
     allocate (law%order(n), source=merge(smooth_order, rough_order, smooth))
     allocate (law%coarse_order, source=law%order)
     law%time_order = time_order
+    pilots = runs
     meshes = pack([(k, k=1, size(pilots))], abs(pilots%fineness%steps - 1) + abs(pilots%fineness%depth - 1) <= 0)
     if (size(meshes) == 0) return
     first = meshes(1)
+    law%depth_mesh = pilots(first)%fineness%mesh
+    if (of_sides) law%depth_order = 1
+    if (of_sides) call take_away_depth(runs, first, pilots)
     law%mesh = pilots(meshes(size(meshes)))%fineness%mesh
     law%space_known = size(meshes) > 1
     law%order_measured = size(meshes) > 2
@@ -98,6 +114,7 @@ contains
       if (law%order_measured) then
         before = difference(pilots(meshes(size(meshes) - 2)), pilots(meshes(size(meshes) - 1)), scales)
         now = max(now, before/2**merge(fastest_smooth, fastest_rough, smooth))
+        law%hidden(:n) = now > round_off .and. now > before/2**least_order
         law%order(:n) = observed_order(before, now, least_order)
         law%coarse_order(:n) = law%order(:n)
       end if
@@ -113,7 +130,7 @@ contains
     do k = 1, size(pilots)
       associate (other => pilots(k)%fineness)
         if (abs(other%mesh - pilots(first)%fineness%mesh) > 0) cycle
-        if (other%depth < 1) law%depth(:n) = difference(pilots(first), pilots(k), scales)/(1 - other%depth)
+        if (other%depth < 1) law%depth(:n) = difference(runs(first), runs(k), scales)/(1 - other%depth)
       end associate
     end do
     call shortest_steps(pilots, first, longer, shorter)
@@ -122,6 +139,56 @@ contains
     law%time(:n) = difference(pilots(longer), pilots(shorter), scales) &
                    /(pilots(longer)%fineness%steps**law%time_order - pilots(shorter)%fineness%steps**law%time_order)
   end subroutine measure_laws
+
+  !> Values of runs as they would be without penetration: what a quarter of it changes on the mesh of the first, at instants that
+  !> both runs have, linear between them; over the factor of the elements along a line on other meshes.
+  pure subroutine take_away_depth(runs, first, pilots)
+    type(sample_t), intent(in) :: runs(:)         !! (npilot)
+    integer, intent(in) :: first
+    type(sample_t), intent(inout) :: pilots(:)    !! (npilot)
+    real(wp), allocatable :: times(:), effect(:, :), now(:)
+    integer, allocatable :: rows(:, :)
+    integer :: stiff, k, i
+
+    stiff = 0
+    do k = 1, size(runs)
+      if (runs(k)%fineness%depth < 1 .and. abs(runs(k)%fineness%mesh - runs(first)%fineness%mesh) <= 0) stiff = k
+    end do
+    if (stiff == 0) return
+    call common_rows(runs(first), runs(stiff), rows)
+    if (size(rows, 2) == 0) return
+    times = runs(first)%time(rows(1, :))
+    effect = (runs(first)%values(:, rows(1, :)) - runs(stiff)%values(:, rows(2, :)))/(1 - runs(stiff)%fineness%depth)
+    ! a cell of another operation has no number
+    where (.not. abs(effect) <= huge(effect)) effect = 0
+    do k = 1, size(pilots)
+      associate (fineness => runs(k)%fineness, values => pilots(k)%values)
+        do i = 1, size(values, 2)
+          now = between(times, effect, runs(k)%time(i))
+          values(:, i) = values(:, i) - now*fineness%depth*runs(first)%fineness%mesh/fineness%mesh
+        end do
+      end associate
+    end do
+  end subroutine take_away_depth
+
+  !> Linear between instants; from nothing at the start, constant behind the last.
+  pure function between(times, values, time) result(now)
+    real(wp), intent(in) :: times(:), time    !! (n) ascending [time]
+    real(wp), intent(in) :: values(:, :)      !! (ncolumn, n) [unit of each column]
+    real(wp) :: now(size(values, 1))
+    real(wp) :: start
+    integer :: k
+
+    k = count(times < time) + 1
+    if (k > size(times)) then
+      now = values(:, size(times))
+    else if (k == 1) then
+      now = values(:, 1)*max(time, 0.0_wp)/max(times(1), tiny(1.0_wp))
+    else
+      start = times(k - 1)
+      now = values(:, k - 1) + (values(:, k) - values(:, k - 1))*(time - start)/(times(k) - start)
+    end if
+  end function between
 
   !> The pilots with the shortest and the next longer steps, on the mesh of the first and with its penetration; the first one where
   !> there is no other. Those whose number of steps hardly differs from that of the shortest are passed over, but the first.
@@ -185,11 +252,31 @@ contains
     type(sample_t), intent(in) :: a, b
     real(wp), intent(in) :: scales(:)   !! (ncolumn) [unit of each column]
     real(wp) :: d(size(scales))
-    real(wp) :: one(size(scales)), last(size(scales)), tolerance
-    integer :: i, j, n
+    real(wp) :: one(size(scales)), last(size(scales))
+    integer, allocatable :: rows(:, :)
+    integer :: k
 
     d = 0
     last = 0
+    call common_rows(a, b, rows)
+    do k = 1, size(rows, 2)
+      one = (a%values(:, rows(1, k)) - b%values(:, rows(2, k)))/scales
+      ! a cell of another operation has no number
+      where (.not. abs(one) <= huge(one)) one = 0
+      d = d + one**2
+      last = abs(one)
+    end do
+    d = max(sqrt(d/max(size(rows, 2), 1)), last)
+    where (d < round_off) d = 0
+  end function difference
+
+  !> Rows of two runs at the instants that they have in common.
+  pure subroutine common_rows(a, b, rows)
+    type(sample_t), intent(in) :: a, b
+    integer, allocatable, intent(out) :: rows(:, :)   !! (2, n) of the one and of the other
+    integer :: found(2, size(a%time)), i, j, n
+    real(wp) :: tolerance
+
     n = 0
     i = 1
     j = 1
@@ -200,19 +287,14 @@ contains
       else if (b%time(j) < a%time(i) - tolerance) then
         j = j + 1
       else
-        one = (a%values(:, i) - b%values(:, j))/scales
-        ! a cell of another operation has no number
-        where (.not. abs(one) <= huge(one)) one = 0
-        d = d + one**2
-        last = abs(one)
         n = n + 1
+        found(:, n) = [i, j]
         i = i + 1
         j = j + 1
       end if
     end do
-    d = max(sqrt(d/max(n, 1)), last)
-    where (d < round_off) d = 0
-  end function difference
+    rows = found(:, :n)
+  end subroutine common_rows
 
   !> Errors in space, in time and of penetration of every quantity.
   pure subroutine errors_of(law, fineness, space, time, depth)
@@ -222,7 +304,7 @@ contains
 
     space = law%space*(law%mesh/fineness%mesh)**merge(law%coarse_order, law%order, fineness%mesh < law%mesh)
     time = law%time*fineness%steps**law%time_order
-    depth = law%depth*fineness%depth
+    depth = law%depth*fineness%depth*(law%depth_mesh/fineness%mesh)**law%depth_order
   end subroutine errors_of
 
   !> What would have to be asked for an error to be expected.
@@ -250,17 +332,14 @@ contains
     integer :: m, k, coarsest, over
 
     met = .false.
-    if (maxval(law%depth) > depth_share*used_share*asked) &
-      fineness%depth = max(depth_share*used_share*asked/maxval(law%depth), least_depth)
     least = huge(least)
-    trial = fineness
     over = 1
     if (present(parts)) over = parts
     coarsest = over
     if (law%order_measured) coarsest = nint(max(law%mesh, 1.0_wp))*over
     do m = coarsest, merge(largest_mesh*over, coarsest, divisible)
-      trial%mesh = real(m, wp)/over
-      trial%steps = 1
+      trial = fineness_t(real(m, wp)/over, 1.0_wp, 1.0_wp)
+      trial%depth = depth_within(law, trial, asked)
       call errors_of(law, trial, space, time, depth)
       do k = 1, size(space)
         left = used_share*asked - space(k) - depth(k)
@@ -275,10 +354,24 @@ contains
       met = .true.
     end do
     if (met) return
-    fineness%mesh = max(law%mesh, 1.0_wp)
+    fineness = fineness_t(max(law%mesh, 1.0_wp), 1.0_wp, 1.0_wp)
+    fineness%depth = depth_within(law, fineness, asked)
     call errors_of(law, fineness, space, time, depth)
     left = used_share*asked/2
     if (maxval(time) > left) fineness%steps = max((left/maxval(time))**(1/law%time_order), least_steps)
   end subroutine choose_fineness
+
+  !> Factor of the penetration that leaves its share of what is asked, on the mesh of a fineness.
+  pure function depth_within(law, fineness, asked) result(factor)
+    type(accuracy_law_t), intent(in) :: law
+    type(fineness_t), intent(in) :: fineness   !! with penetrations as the deck has them
+    real(wp), intent(in) :: asked              !! [-]
+    real(wp) :: factor
+    real(wp), dimension(size(law%space)) :: space, time, depth
+
+    call errors_of(law, fineness, space, time, depth)
+    factor = 1
+    if (maxval(depth) > depth_share*used_share*asked) factor = max(depth_share*used_share*asked/maxval(depth), least_depth)
+  end function depth_within
 
 end module accuracy_laws

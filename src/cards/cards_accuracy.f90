@@ -1,7 +1,7 @@
 !> ACCURACY: which error a run may have; and what a run of another fineness than the deck's is.
 module cards_accuracy
   use accuracy_rules, only: fineness_t, stress_name
-  use contact_penalties, only: scale_penalties
+  use contact_penalties, only: allowed_by_side, scale_penalties
   use deck_cursor, only: cursor_t
   use deck_reader, only: card_t, deck_t
   use diagnostics, only: diagnostics_t
@@ -37,11 +37,11 @@ contains
     type(diagnostics_t), intent(inout), target :: diagnostics
     type(cursor_t) :: cursor
     real(wp) :: percent
-    integer :: k
+    integer :: k, card
 
-    call only_card(deck, 'ACCURACY', .false., diagnostics, k)
-    if (k == 0) return
-    call cursor%open(deck%cards(k), diagnostics)
+    call only_card(deck, 'ACCURACY', .false., diagnostics, card)
+    if (card == 0) return
+    call cursor%open(deck%cards(card), diagnostics)
     call cursor%real('the largest error, in percent', percent, lower=0.0_wp, upper=hundred, strict_lower=.true., &
                      strict_upper=.true.)
     associate (rules => draft%scene%accuracy)
@@ -50,10 +50,24 @@ contains
       call read_names(cursor, deck, draft)
       rules%divisible = parts%divisible
       rules%halvable = parts%divisible .and. parts%even .and. .not. has_contours(draft%scene%remesher)
+      rules%of_sides = .true.
+      do k = 1, size(draft%scene%materials)
+        if (is_contact_law(draft, k)) rules%of_sides = rules%of_sides .and. allowed_by_side(draft%scene%materials(k))
+      end do
     end associate
     if (.not. cursor%failed()) call set_instants(draft%scene)
-    call close_card(draft, cursor, deck%cards(k))
+    call close_card(draft, cursor, deck%cards(card))
   end subroutine read_accuracy
+
+  pure logical function is_contact_law(draft, material)
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: material
+
+    associate (id => draft%scene%materials(material)%law_id)
+      is_contact_law = id > 0
+      if (is_contact_law) is_contact_law = draft%laws(id)%kind == contact_law
+    end associate
+  end function is_contact_law
 
   !> `%`, `OF` and names of columns of the history, or STRESS.
   subroutine read_names(cursor, deck, draft)
@@ -147,7 +161,7 @@ contains
   subroutine make_finer(fineness, draft)
     type(fineness_t), intent(in) :: fineness
     type(draft_t), intent(inout) :: draft
-    integer :: k, id
+    integer :: k
 
     associate (strategy => draft%scene%strategy, share => fineness%steps)
       strategy%first_step = share*strategy%first_step
@@ -163,9 +177,7 @@ contains
       end associate
     end associate
     do k = 1, size(draft%scene%materials)
-      id = draft%scene%materials(k)%law_id
-      if (id == 0) cycle
-      if (draft%laws(id)%kind == contact_law) call scale_penalties(fineness%depth, draft%scene%materials(k))
+      if (is_contact_law(draft, k)) call scale_penalties(fineness%depth, draft%scene%materials(k))
     end do
   end subroutine make_finer
 

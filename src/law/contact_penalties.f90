@@ -5,8 +5,8 @@ module contact_penalties
   use materials, only: material_t
   implicit none
   private
-  public :: penalties_t, penalty_parameters, penalties_of_card, penalty_problems, allowed_penetration, scale_penalties, &
-            tangential_share
+  public :: penalties_t, penalty_parameters, penalties_of_card, penalty_problems, allowed_by_side, allowed_penetration, &
+            scale_penalties, tangential_share
 
   !> Numbers among the values of a material.
   integer, parameter :: place_allowed = 1, place_normal = 2, place_tangential = 3, place_augmentations = 4
@@ -53,6 +53,13 @@ contains
     penalties%tangential = material%values(place_tangential)
     penalties%augmentations = nint(material%values(place_augmentations))
   end function penalties_of_card
+
+  !> Both penalties follow from a penetration over the side of the element: it falls with the side.
+  pure logical function allowed_by_side(material)
+    type(material_t), intent(in) :: material
+
+    allowed_by_side = material%values(place_allowed) > 0 .and. .not. any(material%values([place_normal, place_tangential]) > 0)
+  end function allowed_by_side
 
   !> Allowed penetration over the side of the element, 0 where a penalty is given instead.
   pure function allowed_penetration(material) result(share)

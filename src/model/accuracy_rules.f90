@@ -20,6 +20,8 @@ module accuracy_rules
     logical :: stress = .false.
     !> All bodies are blocks, which can have finer elements; all their divisions are even, so that every second line may go.
     logical :: divisible = .false., halvable = .false.
+    !> Penetrations are allowed as shares of the sides of elements, by all laws of contact: none gives a penalty.
+    logical :: of_sides = .false.
   end type accuracy_rules_t
 
   !> Factors over what the deck says: elements along a line of the mesh (1/2 or whole), length of the steps, penetration.

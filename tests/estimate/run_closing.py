@@ -52,6 +52,47 @@ LIC    q
 STRAT  0.1 1.E-4 0.1   5 3
 END
 """
+STRIP = """TITLE  A strip bent over a nose, two elements thick, and let go
+STATE  PLSTN
+KINEM  LOG
+BLOCK  part PL8LS 9 m
+   0. 0.   40. 0.   40. 2.   0. 2.
+   20 1.   2 1.
+LAW    m EPLA
+   200000. 0.3
+   LINEAR 300. 800.
+LAW    oil COUL2D
+   PENETR 5.E-3  PHI 0.05
+DIE    nose PILOT 0. 2.
+   ARC    10. 12.   7.0711 4.9289   0. 2.   1.E-3
+   ARC    0. 2.   -7.0711 4.9289   -10. 12.   1.E-3
+DIE    support PILOT 30. -5.
+   ARC    25. -5.   30. 0.   35. -5.   1.E-3
+CNT2D  part 3 nose oil
+CNT2D  part 1 support oil
+FIXED  part 4 X
+MOVE   nose Y press
+LIC    press
+   0. 0.   1. -6.   1.5 0.
+STRAT  0.05 1.E-5 0.1   4 3
+END
+"""
+UP = """TITLE  A tube near its limit
+STATE  AXISYM
+KINEM  LOG
+BLOCK  part PL8LS 4 m
+   10. 0.   25. 0.   25. 5.   10. 5.
+   4 1.   2 1.
+LAW    m EPLA
+   200000. 0.3
+   LINEAR 300. 500.
+FIXED  part 1 3 Y
+PRES2D part 4 3 300. p
+LIC    p
+   0. 0.   1. 1.
+STRAT  0.05 1.E-4 0.05   4 3
+END
+"""
 
 
 class Closing(unittest.TestCase):
@@ -148,6 +189,36 @@ class Closing(unittest.TestCase):
             run, told = effectivity_table.made(scene, self.folder, 1, 1)
             true, _ = effectivity_table.error_of_steps(scene, run, effectivity_table.made(scene, self.folder, 1, 0.125)[0])
             self.assertTrue(0.5 < told["path"]["stress_pct"]/(100*true) < 2, (scene, told["path"], true))
+
+    def what_is_told(self, name, text):
+        """`accuracy` of the summary, and the row of the table in the listing and on the page of its report that begin so."""
+        path = os.path.join(self.folder, name + ".lag")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        out = os.path.join(self.folder, "told", name)
+        subprocess.run([os.path.join(BIN, "lagamine"), path, "--out", out, "--quiet"], check=True, env=dict(os.environ, OMP_NUM_THREADS="1"))
+        subprocess.run([os.path.join(BIN, "lagareport"), out, "--quiet"], check=True)
+        found = []
+        for end in ("summary.json", name + ".log", "report.html"):
+            with open(os.path.join(out, end), encoding="utf-8") as file:
+                found.append(file.read())
+        return json.loads(found[0])["accuracy"], found[1], found[2]
+
+    def test_stress_that_its_error_hides(self):
+        """Residual stress on two elements: 261 % by recovery, 74 % by a mesh of four times the elements along a line: no number is told."""
+        told, listing, page = self.what_is_told("strip", STRIP)
+        self.assertGreater(told["space"]["stress_pct"], 100)
+        self.assertIs(told["space"]["stress_known"], False)
+        for text in (listing, page):
+            self.assertIn("stress hidden by its error: no estimate above 100 %", text)
+
+    def test_stress_of_the_path_in_part(self):
+        """A tube under a pressure near its limit: what the stress owes to the motion is not carried on, and the rest is told as a part."""
+        told, listing, page = self.what_is_told("up", UP)
+        self.assertIs(told["path"]["stress_known"], False)
+        self.assertRegex(listing, r"stress at least \S+ % \(at this motion\)")
+        self.assertRegex(page, r"stress at least \S+ % \(at this motion\)")
+        self.assertNotIn("stress_known", told["space"])
 
     def stress_of_steps(self, name, text, steps):
         """What the table says of the stress by the path within steps [%], and the difference to steps of a thirty-second of the deck's."""

@@ -5,10 +5,13 @@ import glob
 import json
 import math
 import os
+import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -129,6 +132,42 @@ class Study(unittest.TestCase):
             file.write("! a file that the deck includes has changed\n")
         self.assertEqual(0, self.study(*words).returncode)
         self.assertFalse(any(os.stat(path).st_mtime_ns == old for path, old in zip(summaries, after)))
+
+    def begin(self, *words):
+        return subprocess.Popen([os.path.join(BIN, "lagastudy"), *words], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                env=dict(os.environ, PYTHONDONTWRITEBYTECODE="1"))
+
+    def wait_for(self, path):
+        end = time.monotonic() + 60
+        while not os.path.exists(os.path.join(self.folder, path)) and time.monotonic() < end:
+            time.sleep(0.01)
+        self.assertTrue(os.path.exists(os.path.join(self.folder, path)), path)
+
+    def test_study_that_is_stopped(self):
+        """TERM ends the run at work too, begins no other one, and the same command goes on; after KILL the run that is left keeps its folder."""
+        ladder = ("bar.lag", "--ladder", "step=0.00005,0.000025,0.0000125", "--quantity", "t")
+        for number in (signal.SIGTERM, signal.SIGINT):
+            out = f"stopped{int(number)}"
+            study = self.begin(*ladder, "--out", out)
+            self.wait_for(os.path.join(out, "step0.00005", "lagamine.lock"))
+            study.send_signal(number)
+            self.assertEqual(128 + number, study.wait(timeout=60))
+            self.assertEqual(["step0.00005"], sorted(os.listdir(os.path.join(self.folder, out))))
+            self.assertEqual(128 + signal.SIGTERM, self.code_of(os.path.join(out, "step0.00005")))
+        study = self.begin(*ladder, "--out", "killed")
+        self.wait_for(os.path.join("killed", "step0.00005", "lagamine.lock"))
+        study.kill()
+        study.wait(timeout=60)
+        done = self.study(*ladder, "--out", "killed")
+        self.assertEqual(5, done.returncode, done.stderr)
+        self.assertIn("step0.00005: a program is at work there", done.stderr)
+        with open(os.path.join(self.folder, "killed", "step0.00005", "lagamine.lock"), encoding="utf-8") as file:
+            left = int(re.search(r"\d+", file.read())[0])
+        os.kill(left, signal.SIGTERM)
+
+    def code_of(self, folder):
+        with open(os.path.join(self.folder, folder, "summary.json"), encoding="utf-8") as file:
+            return json.load(file)["exit_code"]
 
     def test_run_that_fails(self):
         done = self.study("pull.lag", "--ladder", "load=0.5,1.,2.", "--quantity", "plastic_work", "--out", "pull")

@@ -13,6 +13,8 @@ ROWS: List[Tuple[str, str, Dict[str, str]]] = [
     ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}"}),
     ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
 ]
+# Words for the stress where `stress_known` is false.
+UNKNOWN = {"space": "stress hidden by its error: no estimate above 100 %", "path": "stress at least {} % (at this motion)"}
 HOW = {"space": "twice the elements", "path": "shorter steps", "heat": "shorter steps"}
 
 
@@ -26,6 +28,8 @@ def accuracy_section(run: Run) -> Sections:
         entry = given.get(name)
         if not isinstance(entry, dict):
             continue
+        if entry.get("stress_known") is False and name in UNKNOWN:
+            words = {**words, "stress_pct": UNKNOWN[name]}
         found = ", ".join(text.format(brief(number(entry[key]), 3)) for key, text in words.items() if key in entry)
         cost = f"about {brief(number(entry['half_costs']), 2)} times the time ({HOW[name]})" if "half_costs" in entry else "\N{EN DASH}"
         rows.append(("", (escape(where), escape(found), escape(cost))))

@@ -11,7 +11,7 @@ from .errors_of_ladder import judge
 from .ladders import Ladder, Rung, read_ladder, read_quantity
 from .runs import MARK, Result, command_of, digest_of, is_there, make_runs, read_result
 
-EXIT_CODES = "Exit codes: 0 done, 2 the deck or an option is refused, 3 a run did not reach its end (the tables name it), 5 the machine failed."
+EXIT_CODES = "Exit codes: 0 done, 2 the deck or an option is refused, 3 a run did not reach its end (the tables name it), 5 the machine failed, 128+n stopped by signal n."
 NOT_AT_END = 3
 FEWER = 0.7      # of a number of steps: shorter ones, in a ladder that begins with the finest run; contact and events change it by less
 MODULES = ("numpy", "h5py", "matplotlib")

@@ -1,12 +1,16 @@
 """The runs of a study: those that are there already are taken, the others are made, one after the other or several at a time."""
+import fcntl
 import hashlib
 import json
 import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
+import sys
 import tempfile
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
@@ -19,6 +23,7 @@ from lagamine_report.tables import number, read_object, read_summary
 from .ladders import Quantity, Rung
 
 MARK = "study.json"      # in the folder of a run: the call that made it
+LOCK = "lagamine.lock"   # there too: locked while a program is at work
 SPENT = "study.seconds.json"      # beside it: seconds of processor of that call, all programs
 
 
@@ -88,15 +93,28 @@ def is_there(rung: Rung, mark: Dict[str, object]) -> bool:
 
 
 def make_runs(commands: Dict[str, List[str]], marks: Dict[str, Dict[str, object]], jobs: int, tell) -> None:
-    """Run the calls by folder, `jobs` at a time. A folder is marked before its run, so that one of another call is not taken for it."""
+    """Run the calls by folder, `jobs` at a time. A folder is marked before its run, so that one of another call is not taken for it. After a
+    failure no more are begun; INT and TERM end the programs that are at work too, and the study with 128 + their number."""
+    at_work: List[subprocess.Popen] = []
+    ended = threading.Event()
 
     def one(folder: str) -> None:
+        if ended.is_set():
+            return
         try:
+            make(folder)
+        except BaseException:
+            ended.set()
+            raise
+
+    def make(folder: str) -> None:
+        try:
+            refuse_at_work(folder)
             if os.path.isfile(os.path.join(folder, MARK)):
                 shutil.rmtree(folder)
             os.makedirs(folder)
             write(os.path.join(folder, MARK), json.dumps(marks[folder], indent=1).encode("utf-8"))
-            code, said, spent = call(commands[folder])
+            code, said, spent = call(commands[folder], at_work)
             write(os.path.join(folder, SPENT), json.dumps({"processor_s": spent}).encode("utf-8"))
         except FileExistsError as error:
             raise ReportError(f"{folder}: is there, and no run of a study", advice="move it away, or choose another --out") from error
@@ -106,17 +124,47 @@ def make_runs(commands: Dict[str, List[str]], marks: Dict[str, Dict[str, object]
             raise ReportError(f"{shlex.join(commands[folder])}: {said.strip() or f'ended with {code}'}", code)
         tell(folder)
 
+    before = {number: signal.signal(number, lambda number, _: sys.exit(128 + number)) for number in (signal.SIGINT, signal.SIGTERM)}
     with ThreadPoolExecutor(jobs) as pool:
-        for finished in [pool.submit(one, folder) for folder in commands]:
-            finished.result()
+        waiting = [pool.submit(one, folder) for folder in commands]
+        try:
+            for finished in waiting:
+                finished.result()
+        except BaseException as error:
+            for number in before:
+                signal.signal(number, signal.SIG_IGN)
+            ended.set()
+            if not isinstance(error, ReportError):
+                for program in list(at_work):
+                    program.terminate()
+            raise
+        finally:
+            pool.shutdown()
+            for number, handler in before.items():
+                signal.signal(number, handler)
 
 
-def call(words: Sequence[str]) -> Tuple[int, str, float]:
-    """Exit code, messages and seconds of processor of a program and of all that it has started and waited for."""
+def refuse_at_work(folder: str) -> None:
+    """Programs that a killed study has left go on, and their folder is theirs until they end."""
+    try:
+        with open(os.path.join(folder, LOCK), "rb") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return
+    except BlockingIOError as error:
+        raise ReportError(f"{folder}: a program is at work there", EXIT_MACHINE, advice="wait until it ends, or stop it: lagamine.lock there says which") from error
+
+
+def call(words: Sequence[str], at_work: List[subprocess.Popen]) -> Tuple[int, str, float]:
+    """Exit code, messages and seconds of processor of a program and of all that it has started and waited for; it is among those at work meanwhile."""
     with tempfile.TemporaryFile() as messages:
         with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=messages) as program:
-            _, status, used = os.wait4(program.pid, 0)
-            program.returncode = os.waitstatus_to_exitcode(status)
+            at_work.append(program)
+            try:
+                _, status, used = os.wait4(program.pid, 0)
+                program.returncode = os.waitstatus_to_exitcode(status)
+            finally:
+                at_work.remove(program)
         messages.seek(0)
         return program.returncode, messages.read().decode("utf-8", errors="replace"), used.ru_utime + used.ru_stime
 
