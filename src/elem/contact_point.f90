@@ -247,20 +247,15 @@ contains
     trial(at_work) = trial(at_work) + dissipated(committed, trial, stiffness(2))
   end subroutine answer
 
-  !> Work that friction took in a step, per present area: the part of the slip that the tangential penalty does not store. A point
-  !> that goes on slipping the same way had the mean of the friction at both ends on it (trapezoidal rule, as work from outside is
-  !> taken), any other one that of the end.
+  !> Work that friction took in a step, per present area: the part of the slip that the tangential penalty does not store.
   pure function dissipated(before, after, penalty) result(work)
     real(wp), intent(in) :: before(:), after(:)   !! (nstate) [unit of each component]
     real(wp), intent(in) :: penalty               !! tangential [stress/length]
     real(wp) :: work
-    real(wp) :: first
 
     work = 0
     if (nint(after(at_status)) /= contact_slip) return
-    first = after(at_tau)
-    if (nint(before(at_status)) == contact_slip .and. before(at_tau)*after(at_tau) > 0) first = before(at_tau)
-    work = 0.5_wp*(first + after(at_tau))*(after(at_slip) - before(at_slip) - (after(at_tau) - before(at_tau))/penalty)
+    work = after(at_tau)*(after(at_slip) - before(at_slip) - (after(at_tau) - before(at_tau))/penalty)
   end function dissipated
 
   !> Area before the step over the present one, at points of a side.
