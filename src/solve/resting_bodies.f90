@@ -1,6 +1,7 @@
 !> Bodies that nothing holds and nothing loads rest.
 !>
 !> A part that has lost all contact is in equilibrium wherever it is, and so also where the motion of its last step would take it.
+!> One that dies touch with no pressure at all is such a part too.
 !> Without inertia it has no reason to go on: the prediction of a step leaves such a body where it is, and until a contact closes in
 !> the step the diagonals of its equations are a little larger, as nothing else resists it and the matrix would be singular. That
 !> changes no force. One that loses its contact within a step may be carried off by round-off of the forces: where a correction is
@@ -8,7 +9,7 @@
 !> and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
 module resting_bodies
   use bodies, only: bodies_of_nodes
-  use contact_point, only: at_piece, is_in_contact
+  use contact_point, only: at_between, at_piece, at_pressure, contact_block, is_in_contact
   use dofs, only: dofs_t
   use fields, only: displacement_field
   use kinds, only: wp
@@ -181,7 +182,8 @@ contains
     call mark_loads(scene, loose, time, acted_on)
   end subroutine mark_acted_on
 
-  !> Bodies with a point, or a place between points, in contact, on either side, at the start of the step or in its trial state.
+  !> Bodies with a point, or a place between points, on either side, that bears a force at the start of the step, or that is in
+  !> contact in its trial state: one that touches without a force does not act, and would let the body go on with its last motion.
   subroutine mark_contacts(scene, solution, trial, loose, acted_on)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -211,6 +213,7 @@ contains
       do e = 1, size(state, 3)
         do p = 1, size(state, 2)
           if (.not. is_in_contact(state(:, p, e), corners)) cycle
+          if (.not. (trial .or. presses(state(:, p, e), corners))) cycle
           acted_on(loose(group%connectivity(1, e))) = .true.
           if (group%pairs > 0) acted_on(loose(scene%dies(group%die)%nodes(1, nint(state(at_piece, p, e))))) = .true.
         end do
@@ -218,6 +221,16 @@ contains
     end subroutine mark
 
   end subroutine mark_contacts
+
+  !> Whether a point in contact, or a place beside it, bears a force.
+  pure function presses(state, corners) result(yes)
+    real(wp), intent(in) :: state(:)    !! (nstate) of the point
+    logical, intent(in) :: corners      !! places at corners of dies are in the state too
+    logical :: yes
+
+    yes = abs(state(at_pressure)) > 0 .or. state(at_between) > 0
+    if (corners) yes = yes .or. abs(state(contact_block(corners, size(state)) + at_pressure)) > 0
+  end function presses
 
   !> Bodies with a pressure, a force on the volume or a nodal force that is not zero at the end of the step.
   pure subroutine mark_loads(scene, loose, time, acted_on)

@@ -1,0 +1,60 @@
+"""Hard cases of parts that no support holds: dies alone carry them, and touch them one after the other."""
+import math
+
+from hard_support import PLASTIC, Case, deck, np
+
+# Width, height, elements along each, friction, slope of the upper and of the lower die, gaps above and below, travel, step.
+BILLETS = ((11.722, 5.082, 8, 0.05, -0.041, 0.0, 0.402, 0.05, 1.381, 0.1), (6.892, 8.363, 6, 0.1, -0.006, -0.009, 0.22, 0.176, 1.367, 0.1),
+           (8.8895, 7.3276, 8, 0.2, -0.0435, 0.0, 0.3934, 0.1933, 1.7737, 0.05))
+
+
+def turned(angle, *points):
+    """Coordinates of points turned about the origin, as a deck has them."""
+    c, s = math.cos(angle), math.sin(angle)
+    return " ".join(f"{c*x - s*y!r} {s*x + c*y!r}" for x, y in points)
+
+
+def moves(angle, travel):
+    """Cards of an upper die that goes down along the turned axis."""
+    return f"LIC x\n 0. 0. 1. {travel*math.sin(angle)!r}\nLIC y\n 0. 0. 1. {-travel*math.cos(angle)!r}\nMOVE up X x\nMOVE up Y y\n"
+
+
+def last_force(run):
+    """Size of the force of the upper die at the end."""
+    return float(np.hypot(run.history["force_x_up"][-1], run.history["force_y_up"][-1]))
+
+
+def free_billets(checks):
+    """A billet between dies that lean and do not touch it yet, as drawn and turned by .6: it is pushed down, tips, lands and is upset."""
+    worst = 0.0
+    for k, (wide, high, n, friction, up, low, above, below, travel, step) in enumerate(BILLETS):
+        forces = []
+        for angle in (0.0, 0.6):
+            corners = turned(angle, (-wide/2, 0), (wide/2, 0), (wide/2, high), (-wide/2, high))
+            upper = turned(angle, *((x, high + above + up*x) for x in (4*wide, -4*wide)))
+            lower = turned(angle, *((x, low*x - below) for x in (-4*wide, 4*wide)))
+            forces.append(last_force(checks.run(f"free-billet-{k}-{angle}", deck(
+                "PLSTN", "LOG", f"BLOCK b PL8LS 4 m\n {corners}\n {n} 1. {n} 1.\n", PLASTIC.replace("0.2", str(friction)),
+                f"DIE up PILOT {turned(angle, (0, high + 1))}\n SEGM {upper}\nDIE low\n SEGM {lower}\nCNT2D b 1 2 3 4 up k\nCNT2D b 1 2 3 4 low k\n"
+                + moves(angle, travel), f"STRAT {step/travel!r} 1.E-6 {step/travel!r} 6 3"))))
+        worst = max(worst, abs(forces[1] - forces[0])/max(forces))
+    return worst
+
+
+def free_strip(checks):
+    """A strip between three rollers that do not touch it yet, as drawn and turned by .6: it lands on two of them and is bent."""
+    forces = []
+    thick, long, radius, span, gap = 0.5, 79.95, 6.49, 57.06, 0.2
+    for angle in (0.0, 0.6):
+        corners = turned(angle, (-long/2, 0), (long/2, 0), (long/2, thick), (-long/2, thick))
+        dies = ""
+        for name, x, y, side in (("up", 0.0, thick + gap + radius, 1), ("left", -span/2, -gap - radius, -1), ("right", span/2, -gap - radius, -1)):
+            pilot = f" PILOT {turned(angle, (x, y))}" if name == "up" else ""
+            dies += f"DIE {name}{pilot}\n ARC {turned(angle, (x + side*radius, y), (x, y - side*radius), (x - side*radius, y))} 1.E-3\n"
+        forces.append(last_force(checks.run(f"free-strip-{angle}", deck(
+            "PLSTN", "LOG", f"BLOCK b PL8LS 4 m\n {corners}\n 30 1. 2 1.\n", PLASTIC.replace("0.2", "0.1"),
+            dies + "CNT2D b 3 up k\nCNT2D b 1 left k\nCNT2D b 1 right k\n" + moves(angle, 6.0), "STRAT 0.03 1.E-7 0.03 6 3"))))
+    return abs(forces[1] - forces[0])/max(forces)
+
+
+CASES = (Case("free billets under dies that lean", free_billets, 0.03), Case("free strip on rollers", free_strip, 0.05))
