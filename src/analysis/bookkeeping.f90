@@ -136,8 +136,8 @@ contains
         if (.not. associated(row%measure)) cycle
         law = scene%materials(group%material)%law_id
         call group_geometry(scene, group, row, solution%fields(displacement_field)%value, x)
-        call row%measure(scene, group, equations%laws(law), solution%fields(section_field)%value(:, 1), x, &
-                         solution%groups(g)%trial, solution%groups(g)%committed, part)
+        call row%measure(scene, group, equations%laws(law), solution%fields(section_field)%value(:, 1), &
+                         solution%penalty_share, x, solution%groups(g)%trial, solution%groups(g)%committed, part)
         call add_totals(totals, part)
       end associate
     end do

@@ -170,8 +170,8 @@ contains
         if (.not. depth > operations*eps*equations%size) cycle
         call group_geometry(scene, group, row, solution%fields(displacement_field)%value, sides)
         call row%measure(scene, group, equations%laws(scene%materials(group%material)%law_id), &
-                         solution%fields(section_field)%value(:, 1), sides, solution%groups(g)%trial, &
-                         solution%groups(g)%committed, part)
+                         solution%fields(section_field)%value(:, 1), solution%penalty_share, sides, &
+                         solution%groups(g)%trial, solution%groups(g)%committed, part)
         work = work + part%contact_work + part%friction_work
         m = equations%solves(1)%pattern%force_start(g)
         do e = 1, size(dof, 2)

@@ -4,11 +4,12 @@ module failed_step
   use damping, only: begin_damping, strengthen_damping
   use errors, only: error_t
   use kinds, only: wp
-  use listing, only: list_cutback, list_note
+  use listing, only: list_cutback, list_note, list_softer_contact
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use run_record, only: run_t, save_all
   use run_stop, only: stop_here
   use scene, only: scene_t
+  use soft_penalties, only: soften_penalties
   use solution, only: solution_t
   use step_outcome, only: outcome_t
   use step_strategy, only: after_failure
@@ -36,14 +37,21 @@ contains
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
     type(unheld_die_t) :: unheld
-    logical :: give_up, on_probation
+    logical :: give_up, on_probation, softer
 
     on_probation = is_on_probation(solution%probation)
     unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
     call after_failure(scene, dt, solution%next_step, give_up)
+    softer = .false.
+    if (.not. (outcome%of_heat .or. outcome%passes_itself)) &
+      call soften_penalties(scene, outcome%history, solution, softer)
+    ! the step may be found as it is
+    if (softer .and. cutbacks == 0) solution%next_step = dt
     call list_cutback(run%listing, scene, solution, dt, solution%next_step, outcome)
+    if (softer) call list_softer_contact(run%listing, solution)
     cutbacks = cutbacks + 1
+    if (softer .and. cutbacks == 1) return
     ! only a motion that is not found is damped
     if (.not. (outcome%of_heat .or. outcome%passes_itself) &
         .and. (cutbacks > most_cutbacks_undamped .or. give_up .or. solution%damping > 0)) then

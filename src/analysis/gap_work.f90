@@ -123,7 +123,7 @@ contains
         ! walking along the die the part is on the left: the inner normal of the die is on the right
         traction = acted*((old(at_pressure) - old(at_between))*[tangent(2), -tangent(1)] + old(at_tau)*tangent)
         side = side_length(scene, group%connectivity(:, e))
-        penalty = penalties(scene%materials(group%material), group, side)
+        penalty = penalties(scene%materials(group%material), group, side, solution%penalty_share)
         work = work + area &
                *(0.5_wp*dot_product(traction, motion_of_die(scene, solution, group, old, matmul(side_of, phi)) - matmul(du, phi)) &
                  + kept_work(old, now, penalty, [acted, acted]))

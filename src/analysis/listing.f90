@@ -15,7 +15,7 @@ module listing
   implicit none
   private
   public :: listing_t, open_listing, close_listing, show_progress, end_progress
-  public :: list_lines, list_resumed, list_balance, list_step, list_cutback, list_event, list_note
+  public :: list_lines, list_resumed, list_balance, list_step, list_cutback, list_event, list_note, list_softer_contact
 
   type :: listing_t
     integer :: unit = -1
@@ -187,6 +187,15 @@ contains
     call list_iterations(listing, outcome)
     flush (listing%unit)
   end subroutine list_cutback
+
+  !> Penalties that were lowered after a step that failed (soft_penalties).
+  subroutine list_softer_contact(listing, solution)
+    type(listing_t), intent(in) :: listing
+    type(solution_t), intent(in) :: solution
+
+    write (listing%unit, '(a)') '  contact bears little, and presses with '//to_text(solution%penalty_share) &
+      //' of the penalties of PENETR until it is deeper'
+  end subroutine list_softer_contact
 
   !> A step shortened to the moment when contact begins, or by its error in time.
   subroutine list_event(listing, solution, dt, reason)

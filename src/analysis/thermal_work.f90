@@ -160,16 +160,17 @@ contains
         last(strain, :, :) = state%committed(strain, :, :) - expansion
         if (at_kept > 0) first(at_kept, :, :) = 0
         if (at_kept > 0) last(at_kept, :, :) = 0
-        call row%measure(scene, group, law, section, x_last, last, first, at_end)
-        call row%measure(scene, group, law, section - solution%fields(section_field)%last_increment(:, 1), x_first, first, first, &
+        call row%measure(scene, group, law, section, solution%penalty_share, x_last, last, first, at_end)
+        call row%measure(scene, group, law, section - solution%fields(section_field)%last_increment(:, 1), &
+                         solution%penalty_share, x_first, first, first, &
                          at_start)
         ! without stress: work kept by a backstress, and volumes
         last = state%trial
         last(:4, :, :) = 0
         if (at_kept > 0) last(at_kept, :, :) = kept
-        call row%measure(scene, group, law, section, x_last, last, last, with)
+        call row%measure(scene, group, law, section, solution%penalty_share, x_last, last, last, with)
         last(strain, :, :) = last(strain, :, :) + expansion
-        call row%measure(scene, group, law, section, x_last, last, last, without)
+        call row%measure(scene, group, law, section, solution%penalty_share, x_last, last, last, without)
       end associate
     end associate
     heat%work = heat%work + at_end%elastic_energy - at_start%elastic_energy + with%elastic_energy

@@ -144,11 +144,12 @@ contains
 
   !> Friction work, penetration found and allowed, number of points in each contact state. What a control point has is no depth of
   !> the side; nor is there a die where a point is beyond the corner of its face.
-  subroutine measure(scene, group, law, section, x, state, before, totals)
+  subroutine measure(scene, group, law, section, penalty_share, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(law_t), intent(in) :: law
     real(wp), intent(in) :: section(3)        !! thickness at the origin [length], and its slopes [-]
+    real(wp), intent(in) :: penalty_share     !! of penalties that follow from an allowed penetration (soft_penalties) [-]
     real(wp), intent(in) :: x(:, :, :)        !! (2, 3, nside) [length]
     real(wp), intent(in) :: state(:, :, :)    !! (nstate, npoint, nside) [unit of each component]
     real(wp), intent(in) :: before(:, :, :)   !! (nstate, npoint, nside) one step before [unit of each component]
@@ -163,7 +164,7 @@ contains
     n = contact_block(corners, size(state, 1))
     do e = 1, size(x, 3)
       side = side_length(scene, group%connectivity(:, e))
-      penalty = penalties(scene%materials(group%material), group, side)
+      penalty = penalties(scene%materials(group%material), group, side, penalty_share)
       do p = 1, size(xi)
         select case (nint(state(at_status, p, e)))
         case (contact_stick)

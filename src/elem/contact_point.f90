@@ -21,7 +21,7 @@ module contact_point
   public :: area_at, dissipated, is_in_contact, is_released, point_variables, rest, thinning, contact_block
   public :: at_pressure, at_tau, at_penetration, at_status, at_slip, at_augmentation, at_work, at_piece, at_xi, at_between, &
             at_energy, npoint_state
-  public :: most_unknowns, no_surface, share_of_way, touching
+  public :: most_unknowns, no_surface, share_of_way, touching, usual_bearing
 
   !> Rows in the state of a point; the history of its law follows. The pressure has in it that of the side beside the point, where
   !> it is deeper between points than allowed (contact_between).
@@ -30,6 +30,8 @@ module contact_point
                         npoint_state = 11
   !> Six of a side, six of what it meets, three of the section.
   integer, parameter :: most_unknowns = 15
+  !> Pressure over Young's modulus at which the whole penalties that follow from an allowed penetration make that penetration.
+  real(wp), parameter :: usual_bearing = 0.01_wp
 
   !> A radius below this share of the side is the axis.
   real(wp), parameter :: no_surface = 1.0e-9_wp
@@ -293,17 +295,18 @@ contains
   end function area_at
 
   !> Normal and tangential penalty of a group of contact: as given, or such that a pressure of one hundredth of the
-  !> body's modulus makes the allowed penetration, and a share of it.
-  pure function penalties(material, group, side) result(penalty)
+  !> body's modulus makes the allowed penetration, times a share for light contact, and a share of that.
+  pure function penalties(material, group, side, light) result(penalty)
     type(material_t), intent(in) :: material
     type(group_t), intent(in) :: group
-    real(wp), intent(in) :: side   !! [length]
+    real(wp), intent(in) :: side    !! [length]
+    real(wp), intent(in) :: light   !! share of penalties that follow from an allowed penetration (soft_penalties) [-]
     real(wp) :: penalty(2)
     type(penalties_t) :: given
 
     given = penalties_of_card(material)
     penalty(1) = given%normal
-    if (.not. penalty(1) > 0) penalty(1) = 0.01_wp*group%modulus/(given%allowed*side)
+    if (.not. penalty(1) > 0) penalty(1) = light*usual_bearing*group%modulus/(given%allowed*side)
     penalty(2) = given%tangential
     if (.not. penalty(2) > 0) penalty(2) = group%tangential_share*penalty(1)
   end function penalties

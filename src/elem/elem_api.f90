@@ -97,12 +97,13 @@ module elem_api
     end subroutine elem_augment_i
 
     !> Sums over a group at an accepted instant; x and the section are the geometry then.
-    subroutine elem_measure_i(scene, group, law, section, x, state, before, totals)
+    subroutine elem_measure_i(scene, group, law, section, penalty_share, x, state, before, totals)
       import :: group_t, law_t, scene_t, totals_t, wp
       type(scene_t), intent(in) :: scene
       type(group_t), intent(in) :: group
       type(law_t), intent(in) :: law
       real(wp), intent(in) :: section(3)        !! thickness at the origin [length], and its slopes [-]
+      real(wp), intent(in) :: penalty_share     !! of penalties of contact that follow from an allowed penetration [-]
       real(wp), intent(in) :: x(:, :, :)        !! (2, nnode, nelem) [length]
       real(wp), intent(in) :: state(:, :, :)    !! (nstate, npoint, nelem) at the accepted instant [unit of each component]
       real(wp), intent(in) :: before(:, :, :)   !! (nstate, npoint, nelem) one step before [unit of each component]

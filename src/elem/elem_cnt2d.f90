@@ -169,7 +169,7 @@ contains
     side%section = scene%section
     if (scene%finite) side%section = instant%section + side%thickening
     side%length = side_length(scene, group%connectivity(:, element))
-    side%penalty = penalties(scene%materials(group%material), group, side%length)
+    side%penalty = penalties(scene%materials(group%material), group, side%length, instant%lasting_share)
     side%pilot(:, 1) = instant%pilots(:, group%die)
     side%pilot(:, 2) = side%pilot(:, 1) + du(7:9)
     side%dt = instant%dt

@@ -120,7 +120,7 @@ contains
       own%section = scene%section
       if (scene%finite) own%section = instant%section + own%thickening
       own%length = side_length(scene, group%connectivity(:, first + e - 1))
-      own%penalty = penalties(scene%materials(group%material), group, own%length)
+      own%penalty = penalties(scene%materials(group%material), group, own%length, instant%lasting_share)
       associate (at_edge => committed(2*nblock + 1, :, e))
         trial(at_work, :, e) = committed(at_work, :, e)*thinning(xi, xi, own%section, own%thickening, own%x, own%du(1:6))
         trial(nblock + at_work, :, e) = committed(nblock + at_work, :, e) &

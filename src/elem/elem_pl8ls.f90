@@ -394,11 +394,11 @@ contains
 
   !> Volumes and energies. Work densities are per stress-free volume, dv/J with J = exp(tr e). A law's `plastic_work` is what
   !> is dissipated, its `stored_work` what is kept beside the elastic energy and counted with it.
-  subroutine measure(scene, group, law, section, x, state, before, totals)
+  subroutine measure(scene, group, law, section, penalty_share, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(law_t), intent(in) :: law
-    real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
+    real(wp), intent(in) :: section(3), penalty_share, x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
     type(dilatation_t) :: own

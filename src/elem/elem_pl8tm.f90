@@ -523,11 +523,11 @@ contains
   end subroutine limit_flow
 
   !> Volume, where no other formulation gives it.
-  subroutine measure(scene, group, law, section, x, state, before, totals)
+  subroutine measure(scene, group, law, section, penalty_share, x, state, before, totals)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     type(law_t), intent(in) :: law
-    real(wp), intent(in) :: section(3), x(:, :, :), state(:, :, :), before(:, :, :)
+    real(wp), intent(in) :: section(3), penalty_share, x(:, :, :), state(:, :, :), before(:, :, :)
     type(totals_t), intent(out) :: totals
     type(quad8_rule_t) :: rule
     real(wp) :: nx(8), ny(8), detj, thickness(3)

@@ -44,6 +44,8 @@ module element_instant
     logical, allocatable :: turning(:)
     real(wp), allocatable :: corrected_from(:, :)
     real(wp) :: section_from(3) = 0.0_wp
+    !> Share of the penalties that follow from an allowed penetration (soft_penalties) [-].
+    real(wp) :: lasting_share = 1.0_wp
     !> Share of the penalties with which points that had no pressure at the start of the step press (soft_contact) [-].
     real(wp) :: penalty_share = 1.0_wp
     !> Sides press on dies at their points alone, not between them (contact_between).

@@ -28,6 +28,7 @@ module newton
   use pseudo_transient, only: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
   use scene, only: scene_t
   use soft_contact, only: begin_softly, end_softly, is_stage_done, stiffen
+  use soft_penalties, only: press_too_softly, raise_penalties
   use solution, only: solution_t
   use stability, only: ways_to_leave
   use step_outcome, only: outcome_t, set_cause, set_solver_cause
@@ -139,6 +140,10 @@ contains
         end if
       end if
       if (is_in_equilibrium()) then
+        if (press_too_softly(scene, equations%dofs, solution, outcome%du)) then
+          call press_harder()
+          cycle
+        end if
         call augment_contact(changed)
         if (.not. changed) exit
         cycle
@@ -228,6 +233,14 @@ contains
       correction = 0
       call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
     end subroutine stiffen_contact
+
+    !> Contact presses with a share of its penalties that keeps it from sinking in; norms begin anew.
+    subroutine press_harder()
+      call raise_penalties(scene, equations%dofs, outcome%du, solution)
+      first = size(outcome%history) + 1
+      correction = 0
+      call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+    end subroutine press_harder
 
     !> Heat through contact takes what contact has reached; once that hardly changes it follows it. Norms begin anew.
     subroutine exchange_conductances()

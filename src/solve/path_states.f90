@@ -120,9 +120,9 @@ contains
                  section => place%fields(section_field)%value(:, 1))
         call group_geometry(scene, group, row, place%fields(displacement_field)%value, x)
         if (present(committed)) then
-          call row%measure(scene, group, law, section, x, groups(g)%committed, groups(g)%committed, totals)
+          call row%measure(scene, group, law, section, place%penalty_share, x, groups(g)%committed, groups(g)%committed, totals)
         else
-          call row%measure(scene, group, law, section, x, groups(g)%trial, groups(g)%trial, totals)
+          call row%measure(scene, group, law, section, place%penalty_share, x, groups(g)%trial, groups(g)%trial, totals)
         end if
       end associate
       root = root + totals%elastic_energy

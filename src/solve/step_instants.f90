@@ -42,6 +42,7 @@ contains
     instant%reach = equations%stage%reach
     instant%tangent = tangent
     instant%mode = equations%mode
+    instant%lasting_share = solution%penalty_share
     instant%penalty_share = equations%penalty_share
     instant%solved = equations%solves(equations%now)%own
     instant%pilots = solution%fields(pilot_field)%value

@@ -325,10 +325,10 @@ contains
     type(totals_t) :: totals
 
     if (present(before)) then
-      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%scene%section, case%x, case%committed, before, &
-                             totals)
+      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%scene%section, 1.0_wp, case%x, &
+                             case%committed, before, totals)
     else
-      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%scene%section, case%x, case%committed, &
+      call case%elem%measure(case%scene, case%scene%groups(1), case%law, case%scene%section, 1.0_wp, case%x, case%committed, &
                              case%committed, totals)
     end if
   end function totals_of

@@ -41,20 +41,37 @@ def free_billets(checks):
     return worst
 
 
+def strip(angle, size, divisions, roller, gap, penalty, travel, step):
+    """A strip (length, thickness) between three rollers (radius, span of the lower two) that an upper one pushes down, turned."""
+    (long, thick), (radius, span) = size, roller
+    corners = turned(angle, (-long/2, 0), (long/2, 0), (long/2, thick), (-long/2, thick))
+    dies = ""
+    for name, x, y, side in (("up", 0.0, thick + gap + radius, 1), ("left", -span/2, -gap - radius, -1), ("right", span/2, -gap - radius, -1)):
+        pilot = f" PILOT {turned(angle, (x, y))}" if name == "up" else ""
+        dies += f"DIE {name}{pilot}\n ARC {turned(angle, (x + side*radius, y), (x, y - side*radius), (x - side*radius, y))} 1.E-3\n"
+    return deck("PLSTN", "LOG", f"BLOCK b PL8LS 4 m\n {corners}\n {divisions}\n",
+                PLASTIC.replace("PENETR 1.E-3", penalty).replace("0.2", "0.1"),
+                dies + "CNT2D b 3 up k\nCNT2D b 1 left k\nCNT2D b 1 right k\n" + moves(angle, travel), f"STRAT {step!r} 1.E-7 {step!r} 6 3")
+
+
 def free_strip(checks):
     """A strip between three rollers that do not touch it yet, as drawn and turned by .6: it lands on two of them and is bent."""
-    forces = []
-    thick, long, radius, span, gap = 0.5, 79.95, 6.49, 57.06, 0.2
-    for angle in (0.0, 0.6):
-        corners = turned(angle, (-long/2, 0), (long/2, 0), (long/2, thick), (-long/2, thick))
-        dies = ""
-        for name, x, y, side in (("up", 0.0, thick + gap + radius, 1), ("left", -span/2, -gap - radius, -1), ("right", span/2, -gap - radius, -1)):
-            pilot = f" PILOT {turned(angle, (x, y))}" if name == "up" else ""
-            dies += f"DIE {name}{pilot}\n ARC {turned(angle, (x + side*radius, y), (x, y - side*radius), (x - side*radius, y))} 1.E-3\n"
-        forces.append(last_force(checks.run(f"free-strip-{angle}", deck(
-            "PLSTN", "LOG", f"BLOCK b PL8LS 4 m\n {corners}\n 30 1. 2 1.\n", PLASTIC.replace("0.2", "0.1"),
-            dies + "CNT2D b 3 up k\nCNT2D b 1 left k\nCNT2D b 1 right k\n" + moves(angle, 6.0), "STRAT 0.03 1.E-7 0.03 6 3"))))
+    forces = [last_force(checks.run(f"free-strip-{angle}", strip(angle, (79.95, 0.5), "30 1. 2 1.", (6.49, 57.06), 0.2, "PENETR 1.E-3", 6.0, 0.03)))
+              for angle in (0.0, 0.6)]
     return abs(forces[1] - forces[0])/max(forces)
 
 
-CASES = (Case("free billets under dies that lean", free_billets, 0.03), Case("free strip on rollers", free_strip, 0.05))
+def sheets_on_rollers(checks):
+    """Sheets that press on rollers with ten-thousandths of what their penalties are made for, or land on them; beside them a penalty
+    that is stated, a thousandth of that."""
+    worst = 0.0
+    for k, (thick, gap) in enumerate(((0.2, 0.0), (0.3, 0.0), (0.2, 0.3))):
+        travel = 15 + 2*gap
+        forces = [last_force(checks.run(f"sheet-{k}-{penalty[:3]}", strip(0.3, (84.0, thick), "120 1. 1 1.", (5.0, 60.0), gap, penalty, travel,
+                                                                        0.3/travel))) for penalty in ("PENETR 1.E-3", "AKP 1000.")]
+        worst = max(worst, abs(forces[1] - forces[0])/max(forces))
+    return worst
+
+
+CASES = (Case("free billets under dies that lean", free_billets, 0.03), Case("free strip on rollers", free_strip, 0.05),
+         Case("sheets on rollers", sheets_on_rollers, 0.005))
