@@ -63,8 +63,10 @@ contains
     real(wp) :: weight, before, left, share, gain, against
     logical :: done
 
-    outcome%path%known = .false.
-    outcome%path%error = solution%path%error + on_nodes(equations, own)
+    outcome%path%error = solution%path%error
+    outcome%path%known = .not. (any_error(solution, active) .or. max(outcome%path%motion_error, abs(outcome%path%stress_error)) > 0)
+    if (outcome%path%known) return
+    outcome%path%error = outcome%path%error + on_nodes(equations, own)
     outcome%path%jumps = contact_differs(scene, solution)
     weight = share_where_contact_changes(outcome%path, dt, solution%path)
     before = weight*(error_weight(outcome%path, dt, solution%path) - 1)
@@ -72,12 +74,11 @@ contains
     allocate (drivers, source=equations%drivers)
     drivers%vary = .false.
     call start_with_errors(equations, solution, active, added, before, other, errors)
-    left = size_of(errors)
-    outcome%path%known = .not. max(left, outcome%path%motion_error, abs(outcome%path%stress_error)) > 0
-    if (outcome%path%known) return
+    left = 1
+    if (before > 0) left = size_of(errors)
     call advance_beside(scene, equations, active, drivers, outcome%du, dt, other, done)
     if (.not. done) return
-    if (left > 0) left = min(size_of(difference(other%groups, solution%groups, active, 1/small))/left, 1.0_wp)
+    if (before > 0 .and. left > 0) left = min(size_of(difference(other%groups, solution%groups, active, 1/small))/left, 1.0_wp)
     call unbalanced_forces(scene, equations, solution, outcome%du, residual)
     call solve_correction(equations, residual/small, answer, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
@@ -135,9 +136,8 @@ contains
     type(drivers_t), allocatable :: drivers(:)
     type(solution_t) :: other
     real(wp) :: element_force(size(equations%buffers%force))
-    integer :: g
 
-    outcome%path%known = .not. any([(any(abs(solution%groups(g)%error) > 0), g=1, size(active))])
+    outcome%path%known = .not. any_error(solution, active)
     if (outcome%path%known) return
     allocate (drivers, source=equations%drivers)
     drivers%vary = .false.
@@ -148,6 +148,19 @@ contains
     equations%buffers%force = element_force
     if (outcome%path%known) outcome%path%states = difference(other%groups, solution%groups, active, 1/small)
   end subroutine carry_errors_in_quiet
+
+  !> The states have errors at the start of the step.
+  pure function any_error(solution, active) result(yes)
+    type(solution_t), intent(in) :: solution
+    logical, intent(in) :: active(:)   !! (ngroup) bodies that flow
+    logical :: yes
+    integer :: g
+
+    yes = .false.
+    do g = 1, size(active)
+      if (active(g)) yes = yes .or. any(abs(solution%groups(g)%error) > 0)
+    end do
+  end function any_error
 
   !> Where points of contact change, the velocities of some jump: the step is taken to err in the mean of what it says and of what
   !> the last one said in which none did, where that is less.

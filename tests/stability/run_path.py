@@ -9,7 +9,7 @@ against the law's own differential equation (Runge and Kutta), with steps that a
 and by default. `estimated`: the same and an upset billet with steps of one length, PATH and RATE being wide: what the run tells
 over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
 `carried`: the error of the stress that the closing table tells, over the difference to a run with steps of 1/16, where a load rises, rests,
-goes on more slowly, turns and lets go: tubes under pressure, a bent beam, a cantilever with a moved end, a billet, bars that creep.
+goes on more slowly, turns and lets go: tubes under pressure, bent beams, a cantilever with a moved end, plastic and in creep; a cylinder that cools, its temperatures known.
 `tight`: bounds of 1/16 and 1/64. `free`: elastic and uniform plastic bars take the steps they take without bounds, elastic ones on any way. Long steps that a deck allows end with a warning.
 """
 import csv
@@ -146,6 +146,21 @@ WAYS = {
     "tube, creeps": (TUBE, {"law": NORTON.format(120, 0.15), "load": "40.", "way": "0. 0.   0.1 1.   1.1 1.   1.2 0.   2. 0."}, 0.02),
 }
 
+COOLED = """TITLE  A cylinder that is quenched
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  part {element} 4 m{order}
+   0. 0.   25. 0.   25. 40.   0. 40.
+   6 0.4   4 2.
+LAW    m {law}
+{more}STRAT  {first} 1.E-5 {step}   40 3
+STOP   30.
+END
+"""
+STEEL = os.path.join(SOURCE, "decks", "residual_stress", "hot.met")
+HEAT = f"META\n   STEEL {STEEL} stable\n   ENERGY 1.\nSTART  T 800.\nCONVE  part 2 3 H 5. TS 20.\nSAVE   1"
+HOT = f"ARBTHMET\n   STEEL {STEEL} stable\n   STRESS 1.   TIME 1.\nTEMPE  part FROM heat/heat.g01.h5\nFIXED  part 1 Y\nFIXED  part 4 X"
+
 # Another side goes to and fro meanwhile.
 BENT = """LIC    aside
    0. 0.   0.7 0.   1.3 1.   2. -1.
@@ -262,7 +277,9 @@ def energy(stress):
 def carried(checks):
     """Errors of the stress at the end against those of short steps."""
     print(f"\n{'carried':22s} {'steps':>6s} {'error %':>9s} {'told %':>9s} {'effectivity':>11s}")
-    for name, (deck, words, step) in WAYS.items():
+    heat = Run(checks, "heat", COOLED.format(element="PL8TM", order=" BILINEAR", law=HEAT, more="THETA  TRBDF2\n", first=0.01, step=0.25))
+    cooled = {"cylinder, cools": (COOLED, {"element": "PL8LS", "order": "", "law": HOT, "first": 0.02}, 1.0)} if heat.ok else {}
+    for name, (deck, words, step) in {**WAYS, **cooled}.items():
         fine = Run(checks, "carried-fine", deck.format(step=step/16, more=OFF, **words))
         if not fine.ok:
             continue
