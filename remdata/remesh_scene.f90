@@ -264,6 +264,8 @@ contains
 
     call begin_task(facts, 'transfer', 'transfer')
     call carry_progress(before, after)
+    ! of the error of the stress no more than its size is followed on the new mesh
+    after%path%whole_before = before%path%stress_whole
     call carry_solids(old, before, moved, new, after, facts%transfer, error)
     if (allocated(error)) return
     call begin_task(facts, 'contact', 'contact')

@@ -44,6 +44,7 @@ contains
     type(totals_t), intent(out) :: totals
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: friction_before, given_before, outside_before, elastic_before
+    integer :: g
 
     outside_before = solution%external_work
     elastic_before = solution%work%elastic
@@ -56,6 +57,11 @@ contains
     call book_heat_flows(scene, equations, solution)
     call note_heat_step(outcome%heat, solution%heat)
     call note_path_step(outcome%path, dt, solution%time + dt, solution%path)
+    if (allocated(outcome%path%states)) then
+      do g = 1, size(solution%groups)
+        if (allocated(outcome%path%states(g)%value)) solution%groups(g)%error = outcome%path%states(g)%value
+      end do
+    end if
     call move_fields(equations%dofs, outcome%du, solution%fields)
     call fill_middles(scene, solution%fields)
     solution%time = solution%time + dt

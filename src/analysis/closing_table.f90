@@ -48,7 +48,7 @@ module closing_table
     logical :: carried_unknown = .false.
     !> A law flows. Errors of the path within steps, where estimated (NORMS): of the motion in sum, of the stress at the end
     !> with what it owes to the motion (where that is known), and at this motion.
-    logical :: flows = .false., path = .false., whole_known = .false.
+    logical :: flows = .false., path = .false., whole_known = .true.
     real(wp) :: motion = 0.0_wp, path_stress = 0.0_wp, stress_at_motion = 0.0_wp, path_cost = 2.0_wp
     !> There is heat. Its errors in time, where they are estimated (THETA): sum over the steps; of all steps at the end, and
     !> the largest at any time, in the mean square of the volume [temperature]; and how many have one.
@@ -85,10 +85,9 @@ contains
     closing%motion = motion_error(solution%path)
     ! where nothing is strained both errors and stresses are round-off
     if (max(solution%path%stress, solution%path%stress_recent)**2 > energy_without_strain(scene, equations, volume)) then
-      closing%path_stress = whole_stress_error(solution%path)
+      call whole_stress_error(solution%path, closing%path_stress, closing%whole_known)
       closing%stress_at_motion = stress_error(solution%path)
     end if
-    closing%whole_known = solution%path%stress_whole > 0
     closing%warm = has_heat(scene)
     closing%heat_steps = solution%heat%estimated
     closing%heat = solution%heat%error_sum

@@ -89,6 +89,7 @@ contains
     ! what its last steps erred says nothing of the first ones now, which no estimate is made of (settle_path)
     after%path%motion_rate = 0
     after%path%stress_rate = 0
+    after%path%smooth_rate = fresh%path%smooth_rate
     ! the dies are others, with temperatures of their own
     after%heat%die_error = fresh%heat%die_error
     after%estimate = fresh%estimate
@@ -130,6 +131,11 @@ contains
       end if
       if (allocated(before%groups(k)%laid)) after%groups(g)%laid = before%groups(k)%laid
       call take_state(old%groups(k), before%groups(k)%committed, new%groups(g), after%groups(g)%committed)
+      if (size(before%groups(k)%error, 3) == size(after%groups(g)%error, 3)) then
+        call take_state(old%groups(k), before%groups(k)%error, new%groups(g), after%groups(g)%error)
+      else if (size(after%groups(g)%error) > 0) then
+        after%path%unknown = 1
+      end if
       after%groups(g)%trial = after%groups(g)%committed
       if (new%groups(g)%pairs == 0 .or. new%groups(g)%host > 0 .or. old%groups(k)%pairs == 0) cycle
       if (all(shape(after%pairs(new%groups(g)%pairs)%piece) == shape(before%pairs(old%groups(k)%pairs)%piece))) &

@@ -4,26 +4,30 @@ module path_record
   use scene, only: scene_t
   implicit none
   private
-  public :: path_record_t, path_step_t, stress_unknown
-  public :: mean_square, motion_error, note_attempt, note_path_step, settle_path, start_path, &
+  public :: path_record_t, path_step_t, state_error_t
+  public :: error_weight, mean_square, motion_error, note_attempt, note_path_step, settle_path, start_path, &
             stress_before, stress_error, stress_scale, whole_stress_error
 
-  !> An error of the stress that is not known.
-  real(wp), parameter :: stress_unknown = -1.0_wp
+  !> Errors of the state of a group's points, of no elements where it does not flow.
+  type :: state_error_t
+    real(wp), allocatable :: value(:, :, :)   !! (component, point, element) [unit of each component]
+  end type state_error_t
 
   type :: path_step_t
     !> Its errors were estimated, or are taken from those of steps before and after it; one is above what the deck allows.
     logical :: estimated = .false., interpolated = .false., above = .false.
     !> Its motion, and the error of that, in the root mean square over the nodes [length].
     real(wp) :: motion = 0.0_wp, motion_error = 0.0_wp
-    !> The latter, as the displacement of nodes (2, nnode) [length].
-    real(wp), allocatable :: error(:, :)
+    !> At its end: errors of the places of nodes and of the states (path_stress), and the norm of that of the stress; not known
+    !> where they could not be carried on.
+    real(wp), allocatable :: error(:, :)   !! (2, nnode) [length]
+    type(state_error_t), allocatable :: states(:)   !! (ngroup)
+    real(wp) :: stress_whole = 0.0_wp   !! [energy^0.5]
+    logical :: known = .false.
+    !> Points of contact change in it.
+    logical :: jumps = .false.
     !> Root of the elastic energy, its error by this step, and how much is left at the end of the step of an error at its start.
     real(wp) :: stress = 0.0_wp, stress_error = 0.0_wp, left = 1.0_wp
-    !> It ends at a corner of a multiplier, or with the run. Then the error of the stress at its end that has come since the corner
-    !> before, with what it owes to that of the motion; and how much is left of such an error at its start [energy^0.5].
-    logical :: ends_course = .false.
-    real(wp) :: stress_whole = 0.0_wp, whole_left = 1.0_wp
     !> Its errors, of motion and of stress, as they are bounded; it must be shortened by them.
     real(wp) :: sizes(2) = 0.0_wp
     logical :: too_long = .false.
@@ -39,14 +43,13 @@ module path_record
   type :: path_record_t
     !> Sum over the steps of their motion, in the mean square, and what has come of their errors in it [length].
     real(wp) :: moved = 0.0_wp, moved_error = 0.0_wp
-    !> Sum of the errors on the present mesh (2, nnode); of no nodes where none is estimated [length].
+    !> Error of the places that has come on the present mesh (2, nnode); of no nodes where none is estimated [length].
     real(wp), allocatable :: error(:, :)
     !> Root of the elastic energy: its recent mean, its error now, and the largest that was of that over the scale.
     real(wp) :: stress_recent = 0.0_wp, stress_error = 0.0_wp, stress_worst = 0.0_wp
-    !> The last root itself, and the error of the stress then with what it owes to that of the motion (0: not estimated); what is
-    !> left now of that at the last corner of a multiplier (one that was not known is taken to be the stress), and steps since then.
-    real(wp) :: stress = 0.0_wp, stress_whole = 0.0_wp, whole_before = 0.0_wp
-    integer :: course = 0
+    !> The last root itself, and the error of the stress then with what it owes to that of the motion; what is left in it of the one
+    !> with which the meshes and operations before ended; and how much of an error that could not be carried on, as a share of it.
+    real(wp) :: stress = 0.0_wp, stress_whole = 0.0_wp, whole_before = 0.0_wp, unknown = 0.0_wp
     !> Steps with an estimate, attempts shortened by it, and steps above what is allowed.
     integer :: estimated = 0, shortened = 0, above = 0
     !> Steps still to come whose lengths are not bounded by their errors, and how many after the next that is shortened in vain.
@@ -59,6 +62,8 @@ module path_record
     real(wp) :: pending_time = 0.0_wp, pending_square = 0.0_wp, pending_motion = 0.0_wp
     !> Of the last estimate: error of the motion over length times motion [1/time], of the stress over length squared.
     real(wp) :: motion_rate = 0.0_wp, stress_rate = 0.0_wp
+    !> The first of these in the last step in which no point of contact changed; below 0 before there is one [1/time].
+    real(wp) :: smooth_rate = -1.0_wp
     !> The last attempt at the present step that was shortened: its length, and its errors of motion and of stress.
     real(wp) :: tried_length = 0.0_wp, tried_sizes(2) = 0.0_wp
   end type path_record_t
@@ -77,6 +82,9 @@ module path_record
   !> Steps on a new mesh that do without an estimate: what they change beside the motion of the dies, by the return to the yield
   !> surface and contact found anew, does not fall with their length.
   integer, parameter :: settling_steps = 2
+
+  !> An error of which less than this share is left is forgotten.
+  real(wp), parameter :: forgotten = 0.01_wp
 
   !> Share of their recent mean below which stresses are small: those that pass through zero, not those that creep has relaxed by
   !> any power of the time down to -1.
@@ -129,17 +137,16 @@ contains
     real(wp), intent(in) :: dt     !! its length [time]
     real(wp), intent(in) :: time   !! its end [time]
     type(path_record_t), intent(inout) :: record
-    real(wp) :: before, share, rate, least
+    real(wp) :: before
 
     record%tried_length = 0
-    record%stress_whole = 0
-    record%course = record%course + 1
     if (step%interpolated) then
       record%quiet = record%quiet - 1
       record%pending_time = record%pending_time + dt
       record%pending_square = record%pending_square + dt**2
       record%pending_motion = record%pending_motion + step%motion*dt
       record%moved = record%moved + step%motion
+      if (.not. step%known) record%unknown = 1
       call remember(record%stress, dt, time, record%stress_recent)
       return
     end if
@@ -152,28 +159,28 @@ contains
       record%patience = max(record%patience/2, 1)
     end if
     record%quiet = 0
-    if (.not. step%estimated) return
+    if (.not. step%estimated) then
+      if (size(record%error) > 0) record%unknown = 1
+      return
+    end if
     record%estimated = record%estimated + 1
     record%moved = record%moved + step%motion
     ! what came on earlier meshes stays beside the sum of this one
     before = record%moved_error - mean_square(record%error)
-    share = 1
-    rate = 0
-    if (step%motion > 0) rate = step%motion_error/(step%motion*dt)
-    ! a step much shorter than those without an estimate says no more of each than what it errs itself
-    least = step%motion*dt
-    if (record%pending_time > 0) least = max(least, record%pending_motion*record%pending_square/record%pending_time**2)
-    if (rate > 0) share = 1 + record%pending_motion*0.5_wp*(1/least + record%motion_rate/(rate*step%motion*dt))
-    record%error = record%error + share*step%error
+    record%error = step%error
     record%moved_error = max(before + mean_square(record%error), 0.0_wp)
     record%stress_error = stress_before(step, dt, record) + step%stress_error
     record%stress = step%stress
-    record%whole_before = record%whole_before*step%whole_left**(1 + record%pending_time/dt)
-    if (step%ends_course) call end_course(step, record)
+    record%whole_before = record%whole_before*step%left**(1 + record%pending_time/dt)
+    record%unknown = merge(record%unknown*step%left**(1 + record%pending_time/dt), 1.0_wp, step%known)
+    if (record%unknown < forgotten) record%unknown = 0
+    if (step%known) record%stress_whole = hypot(record%whole_before, step%stress_whole)
     call remember(step%stress, dt, time, record%stress_recent)
     record%stress_worst = max(record%stress_worst, stress_error(record))
     if (step%above) record%above = record%above + 1
-    record%motion_rate = rate
+    record%motion_rate = 0
+    if (step%motion > 0) record%motion_rate = step%motion_error/(step%motion*dt)
+    if (.not. step%jumps) record%smooth_rate = record%motion_rate
     record%stress_rate = step%stress_error/dt**2
     record%pending_time = 0
     record%pending_square = 0
@@ -183,16 +190,22 @@ contains
     if (.not. step%above) record%quiet = int(max(min(step%spare/ample - 1, real(most_quiet, wp)), 0.0_wp))
   end subroutine note_path_step
 
-  !> At a corner of a multiplier, or at the end: what has come since the corner before is added to what is left from there, in
-  !> squares, for both have what the error of the places makes of it.
-  pure subroutine end_course(step, record)
+  !> The error of the motion of a step and of those without an estimate before it, over its own: each of those is taken to err in
+  !> the mean of the estimates before and after it.
+  pure function error_weight(step, dt, record) result(weight)
     type(path_step_t), intent(in) :: step
-    type(path_record_t), intent(inout) :: record
+    real(wp), intent(in) :: dt   !! its length [time]
+    type(path_record_t), intent(in) :: record
+    real(wp) :: weight
+    real(wp) :: least
 
-    record%course = 0
-    record%whole_before = hypot(record%whole_before, merge(step%stress_whole, step%stress, step%stress_whole >= 0))
-    if (record%whole_before < step%stress) record%stress_whole = record%whole_before
-  end subroutine end_course
+    weight = 1
+    if (.not. step%motion_error > 0) return
+    ! a step much shorter than those without an estimate says no more of each than what it errs itself
+    least = step%motion*dt
+    if (record%pending_time > 0) least = max(least, record%pending_motion*record%pending_square/record%pending_time**2)
+    weight = 1 + record%pending_motion*0.5_wp*(1/least + record%motion_rate/step%motion_error)
+  end function error_weight
 
   !> Go on with the recent mean.
   pure subroutine remember(stress, dt, time, mean)
@@ -239,16 +252,19 @@ contains
     if (scale > 0) share = abs(record%stress_error)/scale
   end function stress_error
 
-  !> The same with what it owes to the error of the motion, where that is known; the one that creep leaves is a part of it.
-  pure function whole_stress_error(record) result(share)
+  !> The same with directions, pressures and what it owes to the error of the motion, where that is known: errors that are as large
+  !> as the stress are not carried on by its derivatives.
+  pure subroutine whole_stress_error(record, share, known)
     type(path_record_t), intent(in) :: record
-    real(wp) :: share
+    real(wp), intent(out) :: share
+    logical, intent(out) :: known
     real(wp) :: scale
 
     scale = stress_scale(record, record%stress)
+    known = record%unknown < forgotten .and. record%stress_whole <= scale
     share = stress_error(record)
-    if (scale > 0) share = max(share, record%stress_whole/scale)
-  end function whole_stress_error
+    if (known .and. scale > 0) share = record%stress_whole/scale
+  end subroutine whole_stress_error
 
   !> What an error of the stress is compared with: the stress now, or a share of its recent mean where that is more, as when a load
   !> passes through zero.

@@ -22,6 +22,8 @@ module solution
   type :: group_state_t
     real(wp), allocatable :: committed(:, :, :)
     real(wp), allocatable :: trial(:, :, :)
+    !> Error of the committed state that comes of the path within steps; of no elements where it is not estimated.
+    real(wp), allocatable :: error(:, :, :)
     !> Displacements of its nodes when it came, of a body that was laid down (ASLEEP) where strains are small (2, node, element);
     !> not allocated, or of no elements, where it was there from the start [length].
     real(wp), allocatable :: laid(:, :, :)
@@ -112,7 +114,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(out) :: solution
     real(wp), intent(in), optional :: time   !! at which the scene begins, 0 where it is not given [time]
-    integer :: f, g, v, c, npoint, nsolid, nheated, nwarm
+    integer :: f, g, v, c, n, npoint, nsolid, nheated, nwarm
 
     if (present(time)) solution%time = time
     call start_fields(scene, solution%time, solution%fields)
@@ -137,6 +139,8 @@ contains
           end do
         end do
         state%trial = state%committed
+        n = merge(size(group%connectivity, 2), 0, scene%follows_path .and. is_solid(group))
+        allocate (state%error(size(state%committed, 1), npoint, n), source=0.0_wp)
       end associate
     end do
     nsolid = 0

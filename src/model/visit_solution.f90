@@ -146,8 +146,8 @@ contains
     call visitor%member('stress_worst', self%stress_worst, kept, '-', low=0.0_wp)
     call visitor%member('stress', self%stress, kept, 'energy^0.5', low=0.0_wp)
     call visitor%member('stress_whole', self%stress_whole, kept, 'energy^0.5', low=0.0_wp)
-    call visitor%member('whole_before', self%whole_before, kept, 'energy^0.5', low=0.0_wp)
-    call visitor%member('course', self%course, kept, low=0)
+    call visitor%member('whole_before', self%whole_before, recomputed, 'energy^0.5', low=0.0_wp)
+    call visitor%member('unknown', self%unknown, kept, '-', low=0.0_wp, high=1.0_wp)
     call visitor%member('estimated', self%estimated, kept, low=0)
     call visitor%member('shortened', self%shortened, kept, low=0)
     call visitor%member('above', self%above, kept, low=0)
@@ -160,6 +160,7 @@ contains
     call visitor%member('pending_square', self%pending_square, kept, 'time^2', low=0.0_wp)
     call visitor%member('pending_motion', self%pending_motion, kept, 'length time', low=0.0_wp)
     call visitor%member('motion_rate', self%motion_rate, kept, '1/time', low=0.0_wp)
+    call visitor%member('smooth_rate', self%smooth_rate, kept, '1/time')
     call visitor%member('stress_rate', self%stress_rate, kept, 'energy^0.5/time^2')
     call visitor%derived('tried_length', 'of an attempt at a step')
     call visitor%derived('tried_sizes', 'of an attempt at a step')
@@ -180,6 +181,7 @@ contains
     type(group_state_t), intent(inout) :: self
 
     call visitor%member('state', self%committed, by_variable, 'component, point, element')
+    call visitor%member('path_error', self%error, of_the_mesh, 'component, point, element')
     call visitor%member('laid', self%laid, of_the_mesh, 'component, node, element', 'length')
     call visitor%derived('trial', 'every step begins it as the committed state')
   end subroutine visit_group_state

@@ -11,8 +11,10 @@
 module path_bounds
   use equations, only: equations_t
   use kinds, only: eps, wp
-  use path_error, only: at_corner, bend_of, estimate_path, on_nodes
+  use path_error, only: at_corner, bend_of, estimate_path
   use path_record, only: mean_square, path_record_t, path_step_t, stress_before, stress_scale
+  use path_states, only: has_path, on_nodes
+  use path_stress, only: carry_errors_in_quiet
   use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t
@@ -56,8 +58,9 @@ contains
     quiet = is_quiet(scene, solution, dt, outcome%path%bend, last)
     if (quiet) then
       call go_on_in_quiet(equations, solution%path, dt, outcome)
+      call carry_errors_in_quiet(scene, equations, solution, has_path(scene, equations%laws), dt, outcome)
     else
-      call estimate_path(scene, equations, solution, dt, at_hand, last .or. at_corner(scene, solution%time + dt), outcome, done)
+      call estimate_path(scene, equations, solution, dt, at_hand, outcome, done)
     end if
     call equations%timers%stop(timer)
     if (quiet .or. .not. outcome%converged) return

@@ -9,7 +9,7 @@
 !> Forces of this difference are no longer in balance. The motion that balances them, by the last factors of the matrix, is the
 !> error of the motion: where a part is about to give way a small force makes much of it, as at the begin of a neck. The error of
 !> the stress is counted as that of the root of the elastic energy. What becomes in a step of an error at its start is found by
-!> the laws, from a state with elastic strains a little larger: creep forgets it, elastic unloading does not.
+!> the laws, from a state with elastic strains a little smaller: creep forgets it, elastic unloading does not.
 module path_error
   use corrections, only: solve_correction
   use drivers, only: drivers_of_half, drivers_t
@@ -20,8 +20,8 @@ module path_error
   use kinematics_api, only: first_history
   use known_motion, only: proportion
   use path_record, only: mean_square, path_step_t, stress_scale
-  use path_states, only: advance_beside, begin_beside, has_path, root_energy, unbalanced_forces
-  use path_stress, only: difference_of, stress_with_motion
+  use path_states, only: advance_beside, begin_beside, has_path, on_nodes, root_energy, unbalanced_forces
+  use path_stress, only: carry_errors
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
   use solution, only: solution_t
@@ -29,23 +29,23 @@ module path_error
   use strategy, only: strategy_t
   implicit none
   private
-  public :: at_corner, bend_of, estimate_path, on_nodes
+  public :: at_corner, bend_of, estimate_path
 
-  !> Elastic strains are enlarged by this share; what is left of an error is found to about as much.
-  real(wp), parameter :: enlarged = 1.0e-3_wp
+  !> Elastic strains are made smaller by this share, for larger ones are returned at once where a point rests on its yield surface;
+  !> what is left of an error is found to about as much.
+  real(wp), parameter :: reduced = 1.0e-3_wp
   !> An error of the stress below this share, or below as much of a bound that is tighter than by default, is carried on as it is.
   real(wp), parameter :: negligible = 3.0e-4_wp
 
 contains
 
   !> Errors of a step that has converged. `done` is false where the two halves cannot be made.
-  subroutine estimate_path(scene, equations, solution, dt, at_hand, ends_course, outcome, done)
+  subroutine estimate_path(scene, equations, solution, dt, at_hand, outcome, done)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(in) :: solution   !! its trial state is that of the step
     real(wp), intent(in) :: dt        !! [time]
     logical, intent(in) :: at_hand    !! factors of a matrix of this step are
-    logical, intent(in) :: ends_course   !! the error of the stress with the motion's is estimated at the end of this step
     type(outcome_t), intent(inout) :: outcome
     logical, intent(out) :: done
     type(solution_t) :: other
@@ -79,21 +79,18 @@ contains
         ! what follows is of no use then, and may not take the error's place
         if (allocated(outcome%error)) exit estimate
         step%motion = mean_square(on_nodes(equations, outcome%du))
-        allocate (step%error, source=on_nodes(equations, error))
-        step%motion_error = mean_square(step%error)
-        step%ends_course = ends_course
-        if (ends_course) &
-          call stress_with_motion(scene, equations, solution, active, dt, error, 2*residual, other%groups, outcome, &
-                                  step%stress_whole)
-        if (allocated(outcome%error)) exit estimate
+        step%motion_error = mean_square(on_nodes(equations, error))
         call drop_round_off(equations, solution, step)
+        call carry_errors(scene, equations, solution, active, dt, error, 2*residual, other%groups, outcome)
+        if (allocated(outcome%error)) exit estimate
         small = least_share(scene%strategy)*stress_scale(solution%path, step%stress)
-        if (max(abs(step%stress_error), abs(solution%path%stress_error), solution%path%whole_before) > small) then
+        if (max(abs(step%stress_error), abs(solution%path%stress_error), solution%path%whole_before) > small &
+            .or. solution%path%unknown > 0) then
           before = root_energy(scene, equations, active, solution, solution%groups, committed=.true.)
           call begin_beside(solution, other)
           do g = 1, size(active)
             if (active(g)) other%groups(g)%committed(:first_history - 1, :, :) &
-              = (1 + enlarged)*other%groups(g)%committed(:first_history - 1, :, :)
+              = (1 - reduced)*other%groups(g)%committed(:first_history - 1, :, :)
           end do
           deallocate (drivers)
           allocate (drivers, source=equations%drivers)
@@ -102,11 +99,7 @@ contains
           if (done .and. before > 0) then
             after = root_energy(scene, equations, active, other, other%groups)
             ! loads that go on do not make more of it
-            if (max(abs(step%stress_error), abs(solution%path%stress_error)) > small) &
-              step%left = min(max((after - step%stress)/(enlarged*before), 0.0_wp), 1.0_wp)
-            after = root_energy(scene, equations, active, other, &
-                                difference_of(scene, active, other%groups, solution%groups, 1.0_wp))
-            step%whole_left = min(after/(enlarged*before), 1.0_wp)
+            step%left = min(max((step%stress - after)/(reduced*before), 0.0_wp), 1.0_wp)
           end if
           done = .true.
         end if
@@ -141,7 +134,6 @@ contains
     energy = 0.5_wp*solution%fields(displacement_field)%floor*motion
     if (step%motion_error <= motion) step%motion_error = 0
     if (abs(step%stress_error) <= sqrt(energy)) step%stress_error = 0
-    if (step%stress_whole >= 0 .and. step%stress_whole <= sqrt(energy)) step%stress_whole = 0
   end subroutine drop_round_off
 
   !> Motion of the first half: velocities are linear in time, with the mean v(n) of the step before and v of this one in their
@@ -200,22 +192,5 @@ contains
       yes = yes .or. any(abs(scene%multipliers(k)%time - time) <= 64*eps*abs(scene%strategy%end_time))
     end do
   end function at_corner
-
-  !> The part of a motion of unknowns that is of the displacements of nodes.
-  pure function on_nodes(equations, motion) result(displacement)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: motion(:)   !! (ndof) [unknown]
-    real(wp), allocatable :: displacement(:, :)
-    integer :: k, c
-
-    associate (number => equations%dofs%fields(displacement_field)%number)
-      allocate (displacement(size(number, 1), size(number, 2)), source=0.0_wp)
-      do k = 1, size(number, 2)
-        do c = 1, size(number, 1)
-          if (number(c, k) > 0) displacement(c, k) = motion(number(c, k))
-        end do
-      end do
-    end associate
-  end function on_nodes
 
 end module path_error

@@ -15,7 +15,7 @@ module path_states
   use timers, only: ledger_t
   implicit none
   private
-  public :: advance_beside, begin_beside, has_path, root_energy, unbalanced_forces
+  public :: advance_beside, begin_beside, has_path, of_unknowns, on_nodes, root_energy, unbalanced_forces
 
 contains
 
@@ -129,5 +129,39 @@ contains
     end do
     root = sqrt(max(root, 0.0_wp))
   end function root_energy
+
+  !> Displacements of nodes as a motion of the unknowns.
+  pure function of_unknowns(equations, displacement) result(motion)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: displacement(:, :)   !! (2, nnode) [length]
+    real(wp) :: motion(equations%dofs%ndof)
+    integer :: k, c
+
+    motion = 0
+    associate (number => equations%dofs%fields(displacement_field)%number)
+      do k = 1, size(number, 2)
+        do c = 1, size(number, 1)
+          if (number(c, k) > 0) motion(number(c, k)) = displacement(c, k)
+        end do
+      end do
+    end associate
+  end function of_unknowns
+
+  !> The part of a motion of unknowns that is of the displacements of nodes.
+  pure function on_nodes(equations, motion) result(displacement)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: motion(:)   !! (ndof) [unknown]
+    real(wp), allocatable :: displacement(:, :)
+    integer :: k, c
+
+    associate (number => equations%dofs%fields(displacement_field)%number)
+      allocate (displacement(size(number, 1), size(number, 2)), source=0.0_wp)
+      do k = 1, size(number, 2)
+        do c = 1, size(number, 1)
+          if (number(c, k) > 0) displacement(c, k) = motion(number(c, k))
+        end do
+      end do
+    end associate
+  end function on_nodes
 
 end module path_states

@@ -1,180 +1,245 @@
-!> Error of the stress at the end of a run that comes of the path within its steps, with what it owes to the error of the motion.
+!> Errors of the stress and of the places that come of the path within all steps so far, carried on from step to step.
 !>
-!> Steps are judged by the root of the elastic energy at the motion of the run (path_error): that is what creep errs in. Where a
+!> Steps are bounded by the root of the elastic energy at the motion of the run (path_error): that is what creep errs in. Where a
 !> body flows plastically this root hardly errs, for the yield stress states it, but the directions of the stress do, and the
-!> pressures that balance them. So with the last step of a run the difference to a better stress is estimated, in the norm of the
-!> elastic energy:
-!> - d, what the step adds: what two halves of it make of the stress, doubled as in path_error, and the motion that balances that;
-!> - what follows from a start at the places to which the errors of the motion in all steps before add up (path_record);
-!> - M e, what a step makes of an error e of the stress at its start: the laws answer the start with the error, and a motion
-!>   balances what they answer. Steps that are equally long err alike, so e = d + M d + M M d + ..., a term for each step before;
-!>   with the last one in the proportion of its length. (The error of a scheme is the sum of its local ones, each carried on by the
-!>   scheme: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 1993, II.3.)
+!> pressures that balance them. What comes of that is known only of all steps: an error that one has made is forgotten where flow
+!> goes on, kept where points unload or rest, and turned where the load turns. So the difference of all the state and of the places
+!> to a better run is carried along, e(n+1) = M e(n) + d (the error of a scheme is the sum of its local ones, each carried on by the
+!> scheme: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 1993, II.3):
+!> - d, what the step adds: what two halves of it make of the state, doubled as in path_error, and the motion that balances that;
+!> - M e, what the step makes of an error at its start: the laws make the step from the state with the error, at the places with
+!>   theirs, and a motion balances what they answer.
 !>
-!> All of it is made with a thousandth of the errors, so that it is linear, and one solution with the matrix of the step balances
-!> it. Whole errors of the motion are larger than strains of yield: points load and unload by them, and what the solution then
-!> left out of balance grew from step to step (.7 was said where .02 was true).
+!> The state with the error has the hardening that belongs to it: it lies on its yield surface, and a hold leaves it there. One with
+!> another stress alone is returned by the laws and forgotten, or lies within and is kept, as its sign is.
 !>
-!> Where points of contact open, close, stick or slip the other way in the step velocities jump, as at the corner of a multiplier:
-!> then d is not known, and left out. Hardening that differs is not in it; in an upset billet it is a twentieth.
+!> All of it is made with a thousandth of the errors, so that it is linear, and solutions with the matrix of the step balance it.
+!> What they leave out of balance is balanced in the next step. Where the matrix is that of points that flow and the answer is
+!> elastic, they go too far: then the answer is shortened as a line search does.
 module path_stress
   use contact_changes, only: contact_differs
   use corrections, only: solve_correction
   use dofs, only: move_fields
   use drivers, only: drivers_t
   use equations, only: equations_t
-  use fields, only: displacement_field
   use kinds, only: wp
   use kinematics_api, only: first_history
-  use path_record, only: stress_unknown
-  use path_states, only: advance_beside, begin_beside, root_energy, unbalanced_forces
+  use path_record, only: error_weight, path_record_t, path_step_t, state_error_t, stress_scale
+  use path_states, only: advance_beside, begin_beside, of_unknowns, on_nodes, root_energy, unbalanced_forces
   use scene, only: plane_stress, scene_t
   use solution, only: group_state_t, solution_t
   use step_outcome, only: outcome_t
   implicit none
   private
-  public :: difference_of, stress_with_motion
+  public :: carry_errors, carry_errors_in_quiet
 
-  !> Steps whose errors are carried on at most: what is left of older ones is a few percent where a body flows.
-  integer, parameter :: most_steps = 8
   !> The share of the errors by which they are carried on.
   real(wp), parameter :: small = 1.0e-3_wp
-  !> An error that a step makes larger than this is none of the body: pressures that follow it and necks make a little of it.
-  real(wp), parameter :: largest_growth = 1.25_wp
-  !> A motion that should balance forces and makes so large a share of them the other way is none that the matrix can tell.
-  real(wp), parameter :: too_far = 0.5_wp
-  !> An error below this share of the stress is not judged by either: where a step errs in round-off alone, as in an elastic hold,
-  !> the next term may well be larger, and is as nothing still.
-  real(wp), parameter :: negligible = 1.0e-4_wp
+  !> A motion that should balance forces and makes so large a share of them the other way goes too far.
+  real(wp), parameter :: too_far = 0.1_wp
 
 contains
 
-  !> Root of the elastic energy of the error of the stress; `stress_unknown` where one of the other states cannot be made, or errors
-  !> grow.
-  subroutine stress_with_motion(scene, equations, solution, active, dt, error, force, halves, outcome, root)
+  !> Errors at the end of the step; not known where one of the other states cannot be made, or where that of the stress is as large
+  !> as the stress, of which derivatives say nothing: then they begin anew.
+  !>
+  !> Steps without an estimate before it have added nothing yet (carry_errors_in_quiet). They are taken to have erred as this one
+  !> (error_weight): what they would have added is among the errors at the start. Their motions balanced it when it was made, so
+  !> that the share which is forgotten since is a motion too.
+  subroutine carry_errors(scene, equations, solution, active, dt, own, force, halves, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations    !! with factors of a matrix of the step
     type(solution_t), intent(in) :: solution         !! its trial state is that of the step
     logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
     real(wp), intent(in) :: dt                       !! [time]
-    real(wp), intent(in) :: error(:)                 !! (ndof) of the motion of the step [unknown]
+    real(wp), intent(in) :: own(:)                   !! (ndof) error of the motion of the step [unknown]
     real(wp), intent(in) :: force(:)                 !! (ndof) that it balances [residual]
     type(group_state_t), intent(in) :: halves(:)     !! (ngroup) states by two halves, as trial states
     type(outcome_t), intent(inout) :: outcome
-    real(wp), intent(out) :: root                    !! [energy^0.5]
-    type(group_state_t) :: local(size(halves)), found(size(halves))
     type(drivers_t), allocatable :: drivers(:)
+    type(state_error_t) :: added(size(active)), errors(size(active))
     type(solution_t) :: other
-    real(wp), dimension(size(error)) :: places, own, answer, balanced, residual, after
-    real(wp) :: share, now, before, first
-    integer :: term, nterm
+    real(wp), dimension(size(own)) :: answer, residual, after
+    real(wp) :: weight, before, left, share, gain, against
     logical :: done
 
-    root = stress_unknown
-    local = difference_of(scene, active, halves, solution%groups, 2*small)
-    own = small*error
-    balanced = small*force
-    if (contact_differs(scene, solution)) then
-      local = difference_of(scene, active, halves, solution%groups, 0.0_wp)
-      own = 0
-      balanced = 0
-    end if
-    places = small*of_unknowns(equations, solution%path%error)
+    outcome%path%error = solution%path%error
+    outcome%path%known = .not. (any_error(solution, active) .or. max(outcome%path%motion_error, abs(outcome%path%stress_error)) > 0)
+    if (outcome%path%known) return
+    outcome%path%error = outcome%path%error + on_nodes(equations, own)
+    outcome%path%jumps = contact_differs(scene, solution)
+    weight = share_where_contact_changes(outcome%path, dt, solution%path)
+    before = weight*(error_weight(outcome%path, dt, solution%path) - 1)
+    added = difference(halves, solution%groups, active, 2.0_wp)
     allocate (drivers, source=equations%drivers)
-    found = local
-    nterm = min(most_steps, solution%path%course + 1)
-    now = 0
-    first = 0
-    do term = 1, nterm
-      share = merge(0.0_wp, 1.0_wp, term == 1)
-      if (term == nterm) share = share*solution%last_step/dt
-      call start()
-      call advance_beside(scene, equations, active, drivers, outcome%du, dt, other, done)
+    drivers%vary = .false.
+    call start_with_errors(equations, solution, active, added, before, other, errors)
+    left = 1
+    if (before > 0) left = size_of(errors)
+    call advance_beside(scene, equations, active, drivers, outcome%du, dt, other, done)
+    if (.not. done) return
+    if (before > 0 .and. left > 0) left = min(size_of(difference(other%groups, solution%groups, active, 1/small))/left, 1.0_wp)
+    call unbalanced_forces(scene, equations, solution, outcome%du, residual)
+    call solve_correction(equations, residual/small, answer, outcome%error, at_hand=.true.)
+    if (allocated(outcome%error)) return
+    residual = residual/small + weight*force
+    answer = answer + weight*own
+    share = 1
+    call make_with_answer()
+    if (.not. done) return
+    gain = dot_product(residual, answer)
+    against = dot_product(after/small + weight*force, answer)
+    if (against < -too_far*gain) then
+      share = gain/(gain - against)
+      call make_with_answer()
       if (.not. done) return
-      call unbalanced_forces(scene, equations, solution, outcome%du, residual)
-      call solve_correction(equations, residual, answer, outcome%error, at_hand=.true.)
-      if (allocated(outcome%error)) return
-      call start()
-      call advance_beside(scene, equations, active, drivers, outcome%du + own + answer, dt, other, done)
-      if (.not. done) return
-      ! contact, which is in the matrix alone, takes a part of the forces, and no more than all
-      call unbalanced_forces(scene, equations, solution, outcome%du, after)
-      found = difference_of(scene, active, other%groups, solution%groups, 1.0_wp)
-      call add(local, found)
-      before = share*now
-      now = root_energy(scene, equations, active, other, found)
-      if (term == 1) first = now
-      if (.not. now > small*negligible*outcome%path%stress) cycle
-      if (dot_product(after + balanced, answer) < -too_far*dot_product(residual, answer)) return
-      if (now > largest_growth*before + first) return
-    end do
-    root = now/small
+    end if
+    outcome%path%states = sum_of(difference(other%groups, solution%groups, active, 1/small), weight, added)
+    outcome%path%stress_whole = size_of(outcome%path%states)
+    outcome%path%known = outcome%path%stress_whole <= stress_scale(solution%path, outcome%path%stress)
+    if (outcome%path%known) then
+      outcome%path%error = solution%path%error + on_nodes(equations, share*answer + (1 - left)*before*own)
+    else
+      outcome%path%states = sum_of(added, -1.0_wp, added)
+    end if
 
   contains
 
-    !> The start of the step where errors of the motion put it, with this share of the error of the stress that was found.
-    subroutine start()
-      integer :: g
+    !> The step from the start with errors, with this share of the answer. Contact, which is in the matrix alone, takes a part of
+    !> the forces, and no more than all.
+    subroutine make_with_answer()
+      call start_with_errors(equations, solution, active, added, before, other, errors)
+      call advance_beside(scene, equations, active, drivers, outcome%du + small*share*answer, dt, other, done)
+      if (done) call unbalanced_forces(scene, equations, solution, outcome%du, after)
+    end subroutine make_with_answer
 
-      call begin_beside(solution, other)
-      call move_fields(equations%dofs, places, other%fields)
-      do g = 1, size(active)
-        if (active(g)) other%groups(g)%committed(:first_history - 1, :, :) &
-          = other%groups(g)%committed(:first_history - 1, :, :) + share*found(g)%trial(:first_history - 1, :, :)
-      end do
-    end subroutine start
+    !> Norm of the error of the stress.
+    function size_of(errors) result(root)
+      type(state_error_t), intent(in) :: errors(:)   !! (ngroup)
+      real(wp) :: root   !! [energy^0.5]
 
-    !> Stress and elastic strain.
-    subroutine add(part, whole)
-      type(group_state_t), intent(in) :: part(:)       !! (ngroup)
-      type(group_state_t), intent(inout) :: whole(:)   !! (ngroup)
-      integer :: g
+      root = root_energy(scene, equations, active, solution, stress_of(scene, active, errors, solution%groups))
+    end function size_of
 
-      do g = 1, size(active)
-        if (active(g)) whole(g)%trial(:first_history - 1, :, :) = whole(g)%trial(:first_history - 1, :, :) &
-                                                                  + part(g)%trial(:first_history - 1, :, :)
-      end do
-    end subroutine add
+  end subroutine carry_errors
 
-  end subroutine stress_with_motion
-
-  !> So many times the stress and elastic strain of other states less those of the step, as trial states that can be measured.
-  pure function difference_of(scene, active, others, step, factor) result(difference)
+  !> Errors at the end of a step without an estimate: what the laws make of them at its motion. What that leaves out of balance is
+  !> balanced with the next estimate.
+  subroutine carry_errors_in_quiet(scene, equations, solution, active, dt, outcome)
     type(scene_t), intent(in) :: scene
-    logical, intent(in) :: active(:)                          !! (ngroup) bodies that flow
-    type(group_state_t), intent(in) :: others(:), step(:)     !! (ngroup)
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(in) :: solution         !! its trial state is that of the step
+    logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
+    real(wp), intent(in) :: dt                       !! [time]
+    type(outcome_t), intent(inout) :: outcome
+    type(state_error_t) :: none(size(active)), errors(size(active))
+    type(drivers_t), allocatable :: drivers(:)
+    type(solution_t) :: other
+    real(wp) :: element_force(size(equations%buffers%force))
+
+    outcome%path%known = .not. any_error(solution, active)
+    if (outcome%path%known) return
+    allocate (drivers, source=equations%drivers)
+    drivers%vary = .false.
+    ! the books want the element forces of the step
+    element_force = equations%buffers%force
+    call start_with_errors(equations, solution, active, none, 0.0_wp, other, errors)
+    call advance_beside(scene, equations, active, drivers, outcome%du, dt, other, outcome%path%known)
+    equations%buffers%force = element_force
+    if (outcome%path%known) outcome%path%states = difference(other%groups, solution%groups, active, 1/small)
+  end subroutine carry_errors_in_quiet
+
+  !> The states have errors at the start of the step.
+  pure function any_error(solution, active) result(yes)
+    type(solution_t), intent(in) :: solution
+    logical, intent(in) :: active(:)   !! (ngroup) bodies that flow
+    logical :: yes
+    integer :: g
+
+    yes = .false.
+    do g = 1, size(active)
+      if (active(g)) yes = yes .or. any(abs(solution%groups(g)%error) > 0)
+    end do
+  end function any_error
+
+  !> Where points of contact change, the velocities of some jump: the step is taken to err in the mean of what it says and of what
+  !> the last one said in which none did, where that is less.
+  pure function share_where_contact_changes(step, dt, record) result(share)
+    type(path_step_t), intent(in) :: step
+    real(wp), intent(in) :: dt   !! its length [time]
+    type(path_record_t), intent(in) :: record
+    real(wp) :: share
+
+    share = 1
+    if (.not. (step%jumps .and. record%smooth_rate >= 0 .and. step%motion_error > 0)) return
+    share = 0.5_wp*(1 + min(record%smooth_rate*step%motion*dt/step%motion_error, 1.0_wp))
+  end function share_where_contact_changes
+
+  !> The start of the step with a small share of the errors there, and of so many times what a step adds.
+  subroutine start_with_errors(equations, solution, active, added, times, other, errors)
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
+    type(state_error_t), intent(in) :: added(:)      !! (ngroup)
+    real(wp), intent(in) :: times
+    type(solution_t), intent(out) :: other
+    type(state_error_t), intent(out) :: errors(:)    !! (ngroup) of the states, in all
+    integer :: g
+
+    call begin_beside(solution, other)
+    call move_fields(equations%dofs, small*of_unknowns(equations, solution%path%error), other%fields)
+    do g = 1, size(active)
+      if (.not. active(g)) cycle
+      errors(g)%value = solution%groups(g)%error
+      if (times > 0) errors(g)%value = errors(g)%value + times*added(g)%value
+      other%groups(g)%committed = other%groups(g)%committed + small*errors(g)%value
+    end do
+  end subroutine start_with_errors
+
+  !> So many times the trial states less those of the step.
+  pure function difference(others, step, active, factor) result(errors)
+    type(group_state_t), intent(in) :: others(:), step(:)   !! (ngroup)
+    logical, intent(in) :: active(:)                        !! (ngroup) bodies that flow
     real(wp), intent(in) :: factor
-    type(group_state_t) :: difference(size(others))
+    type(state_error_t) :: errors(size(active))             !! (ngroup)
+    integer :: g
+
+    do g = 1, size(active)
+      if (active(g)) errors(g)%value = factor*(others(g)%trial - step(g)%trial)
+    end do
+  end function difference
+
+  !> Errors and so many times others, for groups that have any.
+  pure function sum_of(errors, times, others) result(both)
+    type(state_error_t), intent(in) :: errors(:), others(:)   !! (ngroup)
+    real(wp), intent(in) :: times
+    type(state_error_t) :: both(size(errors))                 !! (ngroup)
+    integer :: g
+
+    do g = 1, size(errors)
+      if (allocated(errors(g)%value)) both(g)%value = errors(g)%value + times*others(g)%value
+    end do
+  end function sum_of
+
+  !> Stress and elastic strain of errors, as trial states that can be measured.
+  pure function stress_of(scene, active, errors, step) result(difference)
+    type(scene_t), intent(in) :: scene
+    logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
+    type(state_error_t), intent(in) :: errors(:)     !! (ngroup)
+    type(group_state_t), intent(in) :: step(:)       !! (ngroup)
+    type(group_state_t) :: difference(size(step))
     integer :: g, last
 
     do g = 1, size(active)
       if (.not. active(g)) cycle
-      allocate (difference(g)%trial, source=others(g)%trial)
+      allocate (difference(g)%trial, source=errors(g)%value)
       associate (of => difference(g)%trial)
-        of(:first_history - 1, :, :) = factor*(of(:first_history - 1, :, :) - step(g)%trial(:first_history - 1, :, :))
+        of(first_history:, :, :) = 0
         ! in plane stress the last one is the stretch across the plane, by which volumes are measured
         last = size(of, 1)
-        if (scene%plane_state == plane_stress .and. scene%finite) last = last - 1
-        of(first_history:last, :, :) = 0
+        if (scene%plane_state == plane_stress .and. scene%finite) of(last, :, :) = step(g)%trial(last, :, :)
       end associate
     end do
-  end function difference_of
-
-  !> Displacements of nodes as a motion of the unknowns.
-  pure function of_unknowns(equations, displacement) result(motion)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: displacement(:, :)   !! (2, nnode) [length]
-    real(wp) :: motion(equations%dofs%ndof)
-    integer :: k, c
-
-    motion = 0
-    associate (number => equations%dofs%fields(displacement_field)%number)
-      do k = 1, size(number, 2)
-        do c = 1, size(number, 1)
-          if (number(c, k) > 0) motion(number(c, k)) = displacement(c, k)
-        end do
-      end do
-    end associate
-  end function of_unknowns
+  end function stress_of
 
 end module path_stress
