@@ -13,8 +13,8 @@ module judge_remesh
   use vectors, only: length_of
   implicit none
   private
-  public :: advice_after_refusal, agreed_words, carried_change, energy_change, find_fault, force_alone, force_along, &
-            force_change, force_limit, limit_lines, refuse_remesh
+  public :: advice_after_refusal, carried_change, energy_change, energy_limit, find_fault, force_alone, force_along, &
+            force_change, force_limit, limit_lines, refuse_remesh, taken_up_words
 
   !> Pressures that miss the force of a die by more than this share of the largest were lost in the transfer. (Found: 0.27 where
   !> a point in a corner carried much of the force; Newton's method finds the rest.)
@@ -28,6 +28,9 @@ module judge_remesh
   !> Changes are over the force of now, or over this share of the largest so far where the load is light: the tenth part of nothing
   !> says nothing about a mesh.
   real(wp), parameter :: light_load = 0.2_wp
+
+  !> Share of the largest force that a die has on which the load is said to stand.
+  real(wp), parameter :: main_force = 0.5_wp
 
   !> First residuals above this are those of a matrix that is singular (work_of_correction).
   real(wp), parameter :: without_correction = 1.0e100_wp
@@ -69,17 +72,69 @@ contains
     if (largest > 0) change = change/largest
   end function worst_change
 
-  !> Limit of the change of a force. Where the deck gives none an old mesh whose stress was wrong by more than the default may have
-  !> had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change
-  !> may as well come of a bad new mesh.
+  !> Limit of the change of a force. Where few nodes bear the load it is up to what their number leaves open (bearing_nodes) and the
+  !> old mesh's error says; where that is more than the force itself, as of a node on the axis, whose force goes with the square of
+  !> the sides, the estimated error says nothing of it.
   pure function force_limit(accept, balance) result(limit)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    real(wp) :: limit
+
+    limit = error_limit(accept, balance)
+    if (accept%force_is_given) return
+    if (open_share(balance) > 1) then
+      limit = max(limit, open_share(balance))
+    else
+      limit = max(limit, min(balance%old_error, open_share(balance)))
+    end if
+  end function force_limit
+
+  !> The same by the errors alone. Where the deck gives no limit an old mesh whose stress was wrong by more than the default may
+  !> have had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change may as
+  !> well come of a bad new mesh.
+  pure function error_limit(accept, balance) result(limit)
     type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
     real(wp) :: limit
 
     limit = accept%force_change
     if (.not. accept%force_is_given) limit = max(limit, min(balance%old_error, most_wrong*limit))
-  end function force_limit
+  end function error_limit
+
+  !> The same of the elastic energy, which goes with the square of the force where few nodes bear that.
+  pure function energy_limit(accept, balance) result(limit)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    real(wp) :: limit
+
+    limit = accept%energy_change
+    if (force_limit(accept, balance) > error_limit(accept, balance)) &
+      limit = max(limit, (1 + force_limit(accept, balance))**2 - 1)
+  end function energy_limit
+
+  !> The same of the forces by the pressures that were carried.
+  pure function lost_limit(accept, balance) result(limit)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    real(wp) :: limit
+
+    limit = max(lost_pressure, force_limit(accept, balance))
+  end function lost_limit
+
+  !> What the nodes in contact leave open of the load: of the die where it is most among those with at least half of the largest
+  !> force.
+  pure function open_share(balance) result(share)
+    type(balance_t), intent(in) :: balance
+    real(wp) :: share
+    real(wp) :: force(size(balance%pilot_before, 2))
+    integer :: k
+
+    share = 0
+    if (.not. allocated(balance%open_share)) return
+    force = [(length_of(balance%pilot_before(1:2, k)), k=1, size(force))]
+    share = maxval([0.0_wp, pack(balance%open_share, force >= main_force*maxval([light_load*balance%largest_force, &
+                                                                                   balance%pressed, force]))])
+  end function open_share
 
   !> Of the force that changes most: its change along what it was, over the largest force; negative where it becomes smaller.
   pure function force_along(balance) result(change)
@@ -120,14 +175,24 @@ contains
     alone = len(what) == 0
   end function force_alone
 
-  !> What is reported of a mesh that is taken up although a force changes.
-  pure function agreed_words(balance) result(words)
+  !> What is reported of a mesh that is taken up although a force changes; empty where that does not.
+  pure function taken_up_words(accept, balance) result(words)
+    type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
     character(len=:), allocatable :: words
 
-    words = 'the force of a die changes by '//to_text(100*force_along(balance), 3)//' % at the new mesh: several new ones agree ' &
-            //'that it was wrong on the old one (error of its stress: '//to_text(100*balance%old_error, 3)//' %)'
-  end function agreed_words
+    words = ''
+    if (balance%refused .or. .not. balance%restored) return
+    words = 'the force of a die changes by '//to_text(100*force_along(balance), 3)//' % at the new mesh: '
+    if (balance%agreed) then
+      words = words//'several new ones agree that it was wrong on the old one (error of its stress: ' &
+              //to_text(100*balance%old_error, 3)//' %)'
+    else if (force_change(balance) > error_limit(accept, balance)) then
+      words = words//'few nodes bear it, and before the contact grows it goes with the size of the elements there'
+    else
+      words = ''
+    end if
+  end function taken_up_words
 
   !> Change of the elastic energy over what was carried; where that is round-off, over what round-off may be.
   pure function energy_change(balance) result(change)
@@ -151,7 +216,7 @@ contains
                    //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
       lines(2)%s = '  equilibrium is left to the first step; change'
       if (balance%restored) lines(2)%s = '  change of die force '//held(force_change(balance), force_limit(accept, balance)) &
-                                         //', of elastic energy '//held(energy_change(balance), accept%energy_change)//','
+                                         //', of elastic energy '//held(energy_change(balance), energy_limit(accept, balance))//','
       lines(2)%s = lines(2)%s//' of depth '//held(balance%depth_change, accept%depth_change)
     end associate
     lines(3)%s = '  least scaled Jacobian '//held(balance%shape, bad_shape)//'; first residual: ' &
@@ -203,16 +268,16 @@ contains
     else if (balance%first_residual > accept%first_residual) then
       what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the stress, in the norm of energy, at most ' &
              //to_text(accept%first_residual, 3)
-    else if (carried_change(balance) > lost_pressure) then
-      what = 'the pressures carried over miss the force of a die by '//percent(carried_change(balance), lost_pressure)
+    else if (carried_change(balance) > lost_limit(accept, balance)) then
+      what = 'the pressures carried over miss the force of a die by '//percent(carried_change(balance), lost_limit(accept, balance))
     else if (.not. balance%restored) then
       return   ! the first step finds it, or the mesh is refused on probation
     else if (balance%iterations > accept%iterations) then
       what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(accept%iterations)
     else if (force_change(balance) > force_limit(accept, balance)) then
       what = 'the force of a die changes by '//percent(force_change(balance), force_limit(accept, balance))
-    else if (energy_change(balance) > accept%energy_change) then
-      what = 'the elastic energy changes by '//percent(energy_change(balance), accept%energy_change)
+    else if (energy_change(balance) > energy_limit(accept, balance)) then
+      what = 'the elastic energy changes by '//percent(energy_change(balance), energy_limit(accept, balance))
     end if
   end subroutine find_fault
 
@@ -227,7 +292,7 @@ contains
       stage = 'mesh'
     else if (balance%depth_change > scene%remesher%accept%depth_change) then
       stage = 'contour'
-    else if (carried_change(balance) > lost_pressure) then
+    else if (carried_change(balance) > lost_limit(scene%remesher%accept, balance)) then
       stage = 'contact'
     else
       stage = 'transfer'

@@ -9,6 +9,7 @@
 !> the yield surface the first step of the march returns, while the dies move on.
 module restore_balance
   use accept_step, only: accept_balance
+  use bearing_nodes, only: count_nodes, error_of_width
   use bookkeeping, only: pressed_on
   use contact_penalties, only: allowed_penetration
   use dies, only: is_deformable
@@ -62,6 +63,8 @@ module restore_balance
     real(wp) :: round_off = 0.0_wp
     !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie).
     real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
+    !> Share of its force that the number of nodes in contact leaves open on each die, 0 where none is (ndie).
+    real(wp), allocatable :: open_share(:)
     !> What presses on each die made of sides, sizes added up (ndie).
     real(wp), allocatable :: pressed(:)
     !> Change of the depth in a die, in the mean of its pressures, over the penetration allowed and a thousandth of the side.
@@ -111,7 +114,7 @@ contains
     type(residual_parts_t) :: parts
     real(wp) :: started, work
     type(report_t) :: report
-    integer :: k
+    integer :: nodes(size(scene%dies)), k
 
     started = wall_seconds()
     equations%mode = mode_restore
@@ -126,6 +129,8 @@ contains
     ! (contact_between) is pushed out of the die as equilibrium is restored
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report, points_alone=.true.)
     balance%depth_change = depth_change(scene, solution)
+    nodes = count_nodes(scene, solution)
+    balance%open_share = [(merge(error_of_width(max(nodes(k), 1), scene%plane_state), 0.0_wp, nodes(k) > 0), k=1, size(nodes))]
     call keep_pressures(scene, solution)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report, points_alone=.true.)
     allocate (balance%pilot_carried, source=solution%fields(pilot_field)%applied)
@@ -183,11 +188,11 @@ contains
 
   !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length carry another
   !> pressure. The multiplier takes the difference, so that every point begins with the pressure that was carried, be it closed or
-  !> one that lies between closed and open ones of the old mesh.
+  !> one that lies between closed and open ones of the old mesh. So does a node on the axis, whose state is that of a corner.
   subroutine keep_pressures(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
-    integer :: g, pressure, multiplier, status
+    integer :: g, pressure, multiplier, status, place
 
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g))
@@ -196,6 +201,15 @@ contains
         multiplier = group%variables(find_variable(group%variables, 'augmentation'))%first
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         where (nint(state%committed(status, :, :)) > 0 .or. state%committed(pressure, :, :) > 0)
+          state%committed(multiplier, :, :) = state%committed(multiplier, :, :) + state%committed(pressure, :, :) &
+                                              - state%trial(pressure, :, :)
+        end where
+        place = find_variable(group%variables, 'corner_place')
+        if (place == 0 .or. group%pairs > 0) cycle
+        place = group%variables(place)%first
+        pressure = group%variables(find_variable(group%variables, 'corner_pressure'))%first
+        multiplier = group%variables(find_variable(group%variables, 'corner_augmentation'))%first
+        where (abs(state%committed(place, :, :)) >= 1 .and. state%committed(pressure, :, :) > 0)
           state%committed(multiplier, :, :) = state%committed(multiplier, :, :) + state%committed(pressure, :, :) &
                                               - state%trial(pressure, :, :)
         end where
