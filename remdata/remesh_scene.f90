@@ -264,7 +264,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call begin_task(facts, 'transfer', 'transfer')
-    call carry_progress(before, after)
+    call carry_progress(old, before, after)
     call carry_solids(old, before, moved, new, after, facts%transfer, error)
     if (allocated(error)) return
     call begin_task(facts, 'contact', 'contact')

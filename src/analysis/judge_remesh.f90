@@ -14,7 +14,7 @@ module judge_remesh
   implicit none
   private
   public :: advice_after_refusal, carried_change, energy_change, energy_limit, find_fault, force_alone, force_along, &
-            force_change, force_limit, limit_lines, refuse_remesh, taken_up_words
+            force_change, force_limit, limit_lines, refuse_remesh, residual_limit, taken_up_words
 
   !> Pressures that miss the force of a die by more than this share of the largest were lost in the transfer. (Found: 0.27 where
   !> a point in a corner carried much of the force; Newton's method finds the rest.)
@@ -28,9 +28,6 @@ module judge_remesh
   !> Changes are over the force of now, or over this share of the largest so far where the load is light: the tenth part of nothing
   !> says nothing about a mesh.
   real(wp), parameter :: light_load = 0.2_wp
-
-  !> Share of the largest force that a die has on which the load is said to stand.
-  real(wp), parameter :: main_force = 0.5_wp
 
   !> First residuals above this are those of a matrix that is singular (work_of_correction).
   real(wp), parameter :: without_correction = 1.0e100_wp
@@ -82,16 +79,16 @@ contains
 
     limit = error_limit(accept, balance)
     if (accept%force_is_given) return
-    if (open_share(balance) > 1) then
-      limit = max(limit, open_share(balance))
+    if (balance%open_share > 1) then
+      limit = max(limit, balance%open_share)
     else
-      limit = max(limit, min(balance%old_error, open_share(balance)))
+      limit = max(limit, min(balance%old_error, balance%open_share))
     end if
   end function force_limit
 
   !> The same by the errors alone. Where the deck gives no limit an old mesh whose stress was wrong by more than the default may
-  !> have had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change may as
-  !> well come of a bad new mesh.
+  !> have had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change may
+  !> as well come of a bad new mesh.
   pure function error_limit(accept, balance) result(limit)
     type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
@@ -100,6 +97,17 @@ contains
     limit = accept%force_change
     if (.not. accept%force_is_given) limit = max(limit, min(balance%old_error, most_wrong*limit))
   end function error_limit
+
+  !> Limit of the first residual: about as large as the error of the stress on the old mesh in any case, where few nodes bear the
+  !> load, and where the stress of the body is that around them.
+  pure function residual_limit(accept, balance) result(limit)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    real(wp) :: limit
+
+    limit = accept%first_residual
+    if (.not. accept%residual_is_given) limit = max(limit, min(balance%old_error, balance%open_share))
+  end function residual_limit
 
   !> The same of the elastic energy, which goes with the square of the force where few nodes bear that.
   pure function energy_limit(accept, balance) result(limit)
@@ -112,7 +120,19 @@ contains
       limit = max(limit, (1 + force_limit(accept, balance))**2 - 1)
   end function energy_limit
 
-  !> The same of the forces by the pressures that were carried.
+  !> The pressures carried over miss the force of a die, and by more than few nodes explain: what these bear has a direction of its
+  !> own, which it loses on the faces of the new sides; there it is enough that equilibrium brings the force back.
+  pure function has_lost_force(accept, balance) result(lost)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    logical :: lost
+
+    lost = carried_change(balance) > lost_limit(accept, balance)
+    if (balance%restored .and. balance%open_share > most_wrong*accept%force_change) &
+      lost = lost .and. force_change(balance) > force_limit(accept, balance)
+  end function has_lost_force
+
+  !> Limit of the change of the force of a die by the pressures that were carried.
   pure function lost_limit(accept, balance) result(limit)
     type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
@@ -120,21 +140,6 @@ contains
 
     limit = max(lost_pressure, force_limit(accept, balance))
   end function lost_limit
-
-  !> What the nodes in contact leave open of the load: of the die where it is most among those with at least half of the largest
-  !> force.
-  pure function open_share(balance) result(share)
-    type(balance_t), intent(in) :: balance
-    real(wp) :: share
-    real(wp) :: force(size(balance%pilot_before, 2))
-    integer :: k
-
-    share = 0
-    if (.not. allocated(balance%open_share)) return
-    force = [(length_of(balance%pilot_before(1:2, k)), k=1, size(force))]
-    share = maxval([0.0_wp, pack(balance%open_share, force >= main_force*maxval([light_load*balance%largest_force, &
-                                                                                   balance%pressed, force]))])
-  end function open_share
 
   !> Of the force that changes most: its change along what it was, over the largest force; negative where it becomes smaller.
   pure function force_along(balance) result(change)
@@ -212,7 +217,7 @@ contains
     type(string_t) :: lines(3)
 
     associate (accept => scene%remesher%accept)
-      lines(1)%s = '  first residual '//held(balance%first_residual, accept%first_residual)//', iterations ' &
+      lines(1)%s = '  first residual '//held(balance%first_residual, residual_limit(accept, balance))//', iterations ' &
                    //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
       lines(2)%s = '  equilibrium is left to the first step; change'
       if (balance%restored) lines(2)%s = '  change of die force '//held(force_change(balance), force_limit(accept, balance)) &
@@ -265,10 +270,10 @@ contains
     else if (balance%first_residual > max(without_correction, accept%first_residual)) then
       what = 'the matrix is singular: nothing holds a body, or a die under a force, on this mesh; contact that a single corner ' &
              //'of a die has with a side may have been lost'
-    else if (balance%first_residual > accept%first_residual) then
+    else if (balance%first_residual > residual_limit(accept, balance)) then
       what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the stress, in the norm of energy, at most ' &
-             //to_text(accept%first_residual, 3)
-    else if (carried_change(balance) > lost_limit(accept, balance)) then
+             //to_text(residual_limit(accept, balance), 3)
+    else if (has_lost_force(accept, balance)) then
       what = 'the pressures carried over miss the force of a die by '//percent(carried_change(balance), lost_limit(accept, balance))
     else if (.not. balance%restored) then
       return   ! the first step finds it, or the mesh is refused on probation
@@ -292,7 +297,7 @@ contains
       stage = 'mesh'
     else if (balance%depth_change > scene%remesher%accept%depth_change) then
       stage = 'contour'
-    else if (carried_change(balance) > lost_limit(scene%remesher%accept, balance)) then
+    else if (has_lost_force(scene%remesher%accept, balance)) then
       stage = 'contact'
     else
       stage = 'transfer'

@@ -9,7 +9,6 @@
 !> the yield surface the first step of the march returns, while the dies move on.
 module restore_balance
   use accept_step, only: accept_balance
-  use bearing_nodes, only: count_nodes, error_of_width
   use bookkeeping, only: pressed_on
   use contact_penalties, only: allowed_penetration
   use dies, only: is_deformable
@@ -55,6 +54,8 @@ module restore_balance
     real(wp) :: largest_force = 0.0_wp
     !> Error of the stress on the old mesh.
     real(wp) :: old_error = 0.0_wp
+    !> Share of the load that the nodes in contact have left open there (bearing_nodes).
+    real(wp) :: open_share = 0.0_wp
     !> Largest motion of a node over the size of the mesh.
     real(wp) :: motion = 0.0_wp
     !> Volume, elastic energy and plastic work before and after.
@@ -63,8 +64,6 @@ module restore_balance
     real(wp) :: round_off = 0.0_wp
     !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie).
     real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
-    !> Share of its force that the number of nodes in contact leaves open on each die, 0 where none is (ndie).
-    real(wp), allocatable :: open_share(:)
     !> What presses on each die made of sides, sizes added up (ndie).
     real(wp), allocatable :: pressed(:)
     !> Change of the depth in a die, in the mean of its pressures, over the penetration allowed and a thousandth of the side.
@@ -114,7 +113,7 @@ contains
     type(residual_parts_t) :: parts
     real(wp) :: started, work
     type(report_t) :: report
-    integer :: nodes(size(scene%dies)), k
+    integer :: k
 
     started = wall_seconds()
     equations%mode = mode_restore
@@ -129,8 +128,6 @@ contains
     ! (contact_between) is pushed out of the die as equilibrium is restored
     call evaluate(scene, equations, solution, 0.0_wp, rest, .false., report, points_alone=.true.)
     balance%depth_change = depth_change(scene, solution)
-    nodes = count_nodes(scene, solution)
-    balance%open_share = [(merge(error_of_width(max(nodes(k), 1), scene%plane_state), 0.0_wp, nodes(k) > 0), k=1, size(nodes))]
     call keep_pressures(scene, solution)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report, points_alone=.true.)
     allocate (balance%pilot_carried, source=solution%fields(pilot_field)%applied)
@@ -161,6 +158,7 @@ contains
     balance%restored = .not. parts%left > 0
     balance%largest_force = solution%largest_force
     balance%old_error = solution%estimate%previous_stress
+    balance%open_share = solution%estimate%previous_open
     balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy, &
                                                          balance%round_off))
     if (allocated(outcome%reason)) balance%reason = outcome%reason

@@ -3,9 +3,10 @@
 
 usage: run_noses.py [all] [-v] [-k]          without `all`: the quick ones
 
-The slope of the faces to the plane [degrees], friction and the number of elements along each side of a block of 10 x 10. All end, no try at a new mesh is refused, and the force at the
-end is that on a mesh of 24 x 24 (the point enters 2.5).
+The slope of the faces to the plane [degrees], friction, the number of elements along each side of a block of 10 x 10, and the radius of the point. All end, no try at a new mesh is
+refused, and the force at the end is that on a mesh of 24 x 24 (the point enters 2.5).
 """
+import itertools
 import os
 import sys
 
@@ -14,10 +15,11 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from remeshed import cycle, tries  # noqa: E402
 from support import DONE, Checks, history, said, write  # noqa: E402
 
-# State, elements, slope, friction: force at the end on 24 x 24 [N, or N/mm].
-QUICK = {("AXISYM", 4, 60.0, 0.2): 6236.0, ("AXISYM", 12, 60.0, 0.2): 6236.0, ("AXISYM", 12, 50.0, 0.0): None, ("PLSTN", 4, 60.0, 0.0): None,
-         ("PLSTN", 12, 60.0, 0.2): 830.0, ("PLSTN", 12, 75.0, 0.2): 494.4}
-SLOPES, FRICTION, ELEMENTS = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0), (0.0, 0.1, 0.3), (4, 8, 12)
+# State, elements, slope, friction, radius: force at the end on 24 x 24 [N, or N/mm].
+QUICK = {("AXISYM", 4, 60.0, 0.2, 0.0): 6236.0, ("AXISYM", 12, 60.0, 0.2, 0.0): 6236.0, ("AXISYM", 12, 50.0, 0.0, 0.0): None,
+         ("PLSTN", 4, 60.0, 0.0, 0.0): None, ("PLSTN", 12, 60.0, 0.2, 0.0): 830.0, ("PLSTN", 12, 75.0, 0.2, 0.0): 494.4,
+         ("AXISYM", 4, 60.0, 0.0, 1.0): 8721.0, ("PLSTN", 4, 45.0, 0.2, 1.0): 1164.0}
+SLOPES, FRICTION, ELEMENTS, RADII = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0), (0.0, 0.1, 0.3), (4, 8, 12), (0.0, 1.0)
 # A contact that is as wide as ten elements of a mesh is known to a tenth: 4 elements across 10 are remeshed to a smallest size of 1.
 SAME_FORCE = 0.1
 
@@ -26,6 +28,7 @@ PARAM  angle 20
 PARAM  mu 0.1
 PARAM  n 8
 PARAM  slope tan($angle*pi/180)
+PARAM  apex 10-{radius}*(1/cos($angle*pi/180)-1)
 STATE  {state}
 KINEM  LOG
 BLOCK  block PL8LS 4 metal
@@ -37,8 +40,8 @@ LAW    metal EPLA
 LAW    film COUL2D
    PENETR 1.E-3   PHI $mu   AUGMENT 10
 DIE    nose PILOT 0. 10.
-   SEGM   30. 10+30*$slope   0. 10.
-   SEGM   0. 10.   -30. 10+30*$slope
+   SEGM   30. $apex+30*$slope   0. $apex
+{fillet}   SEGM   0. $apex   -30. $apex+30*$slope
 CNT2D  block 3 nose film
 FIXED  block 1 Y
 FIXED  block 4 X
@@ -55,11 +58,11 @@ def main():
     checks = Checks()
     cases = dict(QUICK)
     if "all" in sys.argv:
-        cases.update({(state, n, slope, mu): None for state in ("AXISYM", "PLSTN") for n in ELEMENTS for slope in SLOPES for mu in FRICTION})
-    for (state, n, slope, mu), expected in cases.items():
-        name = f"{state} {n} x {n}, {slope:g} degrees, friction {mu:g}"
-        folder = checks.path(f"{state}.{n}.{slope:g}.{mu:g}")
-        deck = write(folder + ".lag", DECK.format(state=state))
+        cases.update({case: None for case in itertools.product(("AXISYM", "PLSTN"), ELEMENTS, SLOPES, FRICTION, RADII) if case not in cases})
+    for (state, n, slope, mu, radius), expected in cases.items():
+        name = f"{state} {n} x {n}, {slope:g} degrees, friction {mu:g}, radius {radius:g}"
+        folder = checks.path(f"{state}.{n}.{slope:g}.{mu:g}.{radius:g}")
+        deck = write(folder + ".lag", DECK.format(state=state, radius=radius, fillet=f"   FILLT  {radius} 1.E-3\n" if radius else ""))
         result = cycle(deck, folder, "--quiet", "-p", f"n={n}", "-p", f"angle={slope}", "-p", f"mu={mu}")
         if not checks.that(result.returncode == DONE, f"{name}: ends", said(result)):
             continue

@@ -6,16 +6,42 @@
 !> is theirs.
 module bearing_nodes
   use dies, only: is_deformable
+  use fields, only: displacement_field, pilot_field
   use kinds, only: wp
   use quadrature, only: line_rule
   use scene, only: axisymmetric, scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
+  use vectors, only: length_of
   implicit none
   private
-  public :: count_nodes, error_of_width
+  public :: count_nodes, error_of_width, open_share
+
+  !> A die bears the load that has at least this share of the largest force on any.
+  real(wp), parameter :: main_force = 0.5_wp
+  !> Two sides have five nodes: fewer are a contact that has just begun.
+  integer, parameter :: few = 4
 
 contains
+
+  !> Share of the load that the nodes in contact leave open where they are few: of the die where it is most, among those that bear
+  !> the load.
+  pure function open_share(scene, solution) result(share)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp) :: share
+    real(wp) :: force(size(scene%dies))
+    integer :: nodes(size(scene%dies)), d
+
+    share = 0
+    if (size(nodes) == 0 .or. .not. scene%fields(displacement_field)%declared) return
+    nodes = count_nodes(scene, solution)
+    force = [(length_of(solution%fields(pilot_field)%applied(1:2, d)), d=1, size(nodes))]
+    do d = 1, size(nodes)
+      if (nodes(d) < 1 .or. nodes(d) > few .or. force(d) < main_force*maxval(force)) cycle
+      share = max(share, error_of_width(nodes(d), scene%plane_state))
+    end do
+  end function open_share
 
   !> Nodes, and points within sides, by which each rigid die is pressed; none on dies made of sides.
   pure function count_nodes(scene, solution) result(number)
