@@ -1,8 +1,8 @@
 !> Transfer of the force of a node that stands in a corner of a die, at an end of a contact interval: the point of a wedge on a
 !> plane of symmetry.
 !>
-!> It bears more than the faces beside it, in a direction of its own that supports give it, and its pressure says nothing of theirs:
-!> spread along an inclined face it would press there with another force, and several times as large. What it has beyond its
+!> It bears more than the faces beside it, in a direction of its own that its support gives it, and its pressure says nothing of
+!> theirs: spread along an inclined face it would press there with another force, and several times as large. What it has beyond its
 !> neighbour's pressure goes to the node of the new mesh in the same place.
 module tip_carry
   use corner_weights, only: handing_over
@@ -18,7 +18,8 @@ module tip_carry
 
 contains
 
-  !> Whether the points at the beginning and the end of an interval are in a corner of their rigid die.
+  !> Whether the points at the beginning and the end of an interval are in a corner of their rigid die, and a support holds the
+  !> node.
   pure function ends_in_tips(scene, g, row, state) result(in_tip)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g                     !! contact group
@@ -38,6 +39,7 @@ contains
           if (row%offset(p) /= 0 .or. .not. is_at_end(row, p, k)) cycle
           associate (point => state(:, row%point(p), row%element(p)), side => sides(:, row%element(p)))
             if (nint(point(status_row(scene, g))) == 0 .or. nint(point(variables(piece)%first)) == 0) cycle
+            if (.not. any([is_held(scene, side(1)), is_held(scene, side(3))])) cycle
             if (is_in_corner(scene%dies(scene%groups(g)%die), nint(point(variables(piece)%first)), point(variables(xi)%first), &
                              handing_over*length_of(x(:, side(3)) - x(:, side(1))))) in_tip(k) = .true.
           end associate
@@ -45,6 +47,19 @@ contains
       end do
     end associate
   end function ends_in_tips
+
+  !> A node has a prescribed displacement.
+  pure function is_held(scene, node) result(held)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: node
+    logical :: held
+    integer :: k
+
+    held = .false.
+    do k = 1, size(scene%fixations)
+      held = held .or. any(scene%fixations(k)%nodes == node)
+    end do
+  end function is_held
 
   !> A place on a piece of a die is no farther than `reach` from a corner at its end.
   pure function is_in_corner(die, piece, xi, reach) result(yes)
