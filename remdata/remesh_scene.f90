@@ -5,6 +5,7 @@
 !> its errors (`sizes_of_run`), it is the mesh of a later generation. A failure ends in an error that names its stage; the old
 !> checkpoint is never modified.
 module remesh_scene
+  use axis_carry, only: carry_axis_nodes
   use axis_nodes, only: put_on_axis
   use body_seams, only: find_seams, seams_t
   use carry_solution, only: carry_progress, carry_solids
@@ -263,7 +264,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call begin_task(facts, 'transfer', 'transfer')
-    call carry_progress(before, after)
+    call carry_progress(old, before, after)
     ! of the error of the stress no more than its size is followed on the new mesh
     after%path%whole_before = before%path%stress_whole
     call carry_solids(old, before, moved, new, after, facts%transfer, error)
@@ -271,6 +272,7 @@ contains
     call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)
     call carry_points(old, before, contours, new, after, facts%contacts)
+    call carry_axis_nodes(old, before, new, after, facts%contacts)
     call update_closest_points(new, after)
     call carry_folds(old, before, contours, mesh, new, after)
   end subroutine carry_state

@@ -163,6 +163,9 @@ contains
         if (group%die == 0 .or. faces_itself(scene, group)) cycle
         row = find_variable(group%variables, 'contact_status')
         if (row > 0) closed(g) = any(nint(solution%groups(g)%committed(group%variables(row)%first, :, :)) /= 0)
+        ! a node on the axis is in contact by itself
+        row = find_variable(group%variables, 'corner_contact_status')
+        if (row > 0) closed(g) = closed(g) .or. any(nint(solution%groups(g)%committed(group%variables(row)%first, :, :)) /= 0)
       end associate
     end do
   end function closed_groups

@@ -1,5 +1,6 @@
 !> What a solution holds, but contact, from the old mesh to the new one: progress, state of the solids, fields on nodes.
 module carry_solution
+  use bearing_nodes, only: open_share
   use errors, only: error_t
   use fields, only: displacement_field, has_corners_only, on_nodes
   use kept_members, only: member_memory_t
@@ -22,7 +23,8 @@ module carry_solution
 contains
 
   !> Time, dies, work: what does not depend on the mesh (visit_solution says of each member how it is carried).
-  subroutine carry_progress(before, after)
+  subroutine carry_progress(old, before, after)
+    type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
     type(solution_t), intent(inout) :: after
     type(member_memory_t) :: memory
@@ -35,6 +37,7 @@ contains
     after%estimate%began = before%step
     after%estimate%last_stop = before%step
     after%estimate%previous_stress = before%estimate%stress
+    after%estimate%previous_open = open_share(old, before)
     call carry_error(before%estimate, after%estimate)
     after%unbalanced = .true.
   end subroutine carry_progress

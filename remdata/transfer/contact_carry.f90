@@ -9,6 +9,7 @@ module contact_carry
   use solution, only: present_coordinates, solution_t
   use state_variables, only: component_names, find_variable, kind_contact => transfer_contact
   use text, only: string_t
+  use tip_carry, only: ends_in_tips, put_on, take_off
   use transfer_contact, only: carry_along
   use transfer_report, only: carried_quantity_t
   use zone_mesh, only: new_mesh_t
@@ -31,6 +32,7 @@ contains
     type(interval_points_t) :: row_old, row_new, row_of_points
     integer, allocatable :: carried(:)
     logical, allocatable :: conserved(:)
+    logical :: in_tip(2)
     integer :: c, k, g, h, i
 
     allocate (rows(0))
@@ -42,12 +44,13 @@ contains
         call old_row(old, g, contours(c)%loop, contours(c)%contacts(k)%interval, x, from%groups(g)%committed, .false., &
                      row_of_points)
         call new_row(new, g, contours, c, k, mesh, row_new)
+        in_tip = ends_in_tips(old, g, row_old, from%groups(g)%committed)
         ! the group, and heat through its points
         do h = 1, size(old%groups)
           if (h /= g .and. .not. (old%groups(h)%role == role_heat_contact .and. old%groups(h)%host == g)) cycle
           if (h /= g) row_old = row_of_points
           call list_carried(old, h, carried, conserved)
-          call carry_interval(carried, conserved, row_old, row_new, from%groups(h)%committed, status_row(old, h), &
+          call carry_interval(carried, conserved, in_tip, row_old, row_new, from%groups(h)%committed, status_row(old, h), &
                               to%groups(h)%committed)
           if (h == g) call place_on_die(new, g, contours(c)%boundary, contours(c)%contacts(k), row_new, to%groups(g)%committed)
           call add_integrals(old, h, carried(pack([(i, i=1, size(carried))], conserved)), row_old, from%groups(h)%committed, &
@@ -116,24 +119,33 @@ contains
     end do
   end subroutine list_carried
 
-  pure subroutine carry_interval(carried, conserved, row_old, row_new, before, status, after)
+  pure subroutine carry_interval(carried, conserved, in_tip, row_old, row_new, before, status, after)
     integer, intent(in) :: carried(:)
     logical, intent(in) :: conserved(:)   !! the integral along the interval is kept
+    logical, intent(in) :: in_tip(2)      !! the interval begins, ends in a corner of the die
     type(interval_points_t), intent(in) :: row_old, row_new
     real(wp), intent(in) :: before(:, :, :)
     integer, intent(in) :: status
     real(wp), intent(inout) :: after(:, :, :)
-    real(wp) :: old(size(carried), size(row_old%s)), new(size(carried), size(row_new%s)), change(size(carried))
-    integer :: p, v, nearest
+    real(wp) :: old(size(carried), size(row_old%s)), new(size(carried), size(row_new%s)), change(size(carried)), &
+                in_tips(size(carried), 2)
+    integer :: p, v, k, nearest
 
     if (size(row_old%s) == 0) return
     do p = 1, size(row_old%s)
       old(:, p) = before(carried + row_old%offset(p), row_old%point(p), row_old%element(p))
     end do
     call share_forces(row_old, old)
+    in_tips = 0
+    do k = 1, 2
+      if (in_tip(k)) call take_off(row_old, row_new, k, conserved, old, in_tips(:, k))
+    end do
     do v = 1, size(carried)
       call carry_along(row_old%length, row_old%s, old(v:v, :), row_old%weight, row_new%length, row_new%s, row_new%weight, 2, &
                        conserved(v), new(v:v, :), change(v:v))
+    end do
+    do k = 1, 2
+      call put_on(row_new, k, in_tips(:, k), new)
     end do
     do p = 1, size(row_new%s)
       after(carried, row_new%point(p), row_new%element(p)) = new(:, p)

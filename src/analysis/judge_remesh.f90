@@ -13,8 +13,8 @@ module judge_remesh
   use vectors, only: length_of
   implicit none
   private
-  public :: advice_after_refusal, agreed_words, carried_change, energy_change, find_fault, force_alone, force_along, &
-            force_change, force_limit, limit_lines, refuse_remesh
+  public :: advice_after_refusal, carried_change, energy_change, energy_limit, find_fault, force_alone, force_along, &
+            force_change, force_limit, limit_lines, refuse_remesh, residual_limit, taken_up_words
 
   !> Pressures that miss the force of a die by more than this share of the largest were lost in the transfer. (Found: 0.27 where
   !> a point in a corner carried much of the force; Newton's method finds the rest.)
@@ -69,17 +69,77 @@ contains
     if (largest > 0) change = change/largest
   end function worst_change
 
-  !> Limit of the change of a force. Where the deck gives none an old mesh whose stress was wrong by more than the default may have
-  !> had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change
-  !> may as well come of a bad new mesh.
+  !> Limit of the change of a force. Where few nodes bear the load it is up to what their number leaves open (bearing_nodes) and the
+  !> old mesh's error says; where that is more than the force itself, as of a node on the axis, whose force goes with the square of
+  !> the sides, the estimated error says nothing of it.
   pure function force_limit(accept, balance) result(limit)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    real(wp) :: limit
+
+    limit = error_limit(accept, balance)
+    if (accept%force_is_given) return
+    if (balance%open_share > 1) then
+      limit = max(limit, balance%open_share)
+    else
+      limit = max(limit, min(balance%old_error, balance%open_share))
+    end if
+  end function force_limit
+
+  !> The same by the errors alone. Where the deck gives no limit an old mesh whose stress was wrong by more than the default may
+  !> have had a force as wrong, and it is the new one that is right then; up to `most_wrong` times the default: a larger change may
+  !> as well come of a bad new mesh.
+  pure function error_limit(accept, balance) result(limit)
     type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
     real(wp) :: limit
 
     limit = accept%force_change
     if (.not. accept%force_is_given) limit = max(limit, min(balance%old_error, most_wrong*limit))
-  end function force_limit
+  end function error_limit
+
+  !> Limit of the first residual: about as large as the error of the stress on the old mesh in any case, where few nodes bear the
+  !> load, and where the stress of the body is that around them.
+  pure function residual_limit(accept, balance) result(limit)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    real(wp) :: limit
+
+    limit = accept%first_residual
+    if (.not. accept%residual_is_given) limit = max(limit, min(balance%old_error, balance%open_share))
+  end function residual_limit
+
+  !> The same of the elastic energy, which goes with the square of the force where few nodes bear that.
+  pure function energy_limit(accept, balance) result(limit)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    real(wp) :: limit
+
+    limit = accept%energy_change
+    if (force_limit(accept, balance) > error_limit(accept, balance)) &
+      limit = max(limit, (1 + force_limit(accept, balance))**2 - 1)
+  end function energy_limit
+
+  !> The pressures carried over miss the force of a die, and by more than few nodes explain: what these bear has a direction of its
+  !> own, which it loses on the faces of the new sides; there it is enough that equilibrium brings the force back.
+  pure function has_lost_force(accept, balance) result(lost)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    logical :: lost
+
+    lost = carried_change(balance) > lost_limit(accept, balance)
+    if (balance%restored .and. balance%open_share > most_wrong*accept%force_change) &
+      lost = lost .and. force_change(balance) > force_limit(accept, balance)
+  end function has_lost_force
+
+  !> Limit of the change of the force of a die by the pressures that were carried.
+  pure function lost_limit(accept, balance) result(limit)
+    type(acceptance_t), intent(in) :: accept
+    type(balance_t), intent(in) :: balance
+    real(wp) :: limit
+
+    limit = max(lost_pressure, force_limit(accept, balance))
+  end function lost_limit
 
   !> Of the force that changes most: its change along what it was, over the largest force; negative where it becomes smaller.
   pure function force_along(balance) result(change)
@@ -120,14 +180,24 @@ contains
     alone = len(what) == 0
   end function force_alone
 
-  !> What is reported of a mesh that is taken up although a force changes.
-  pure function agreed_words(balance) result(words)
+  !> What is reported of a mesh that is taken up although a force changes; empty where that does not.
+  pure function taken_up_words(accept, balance) result(words)
+    type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
     character(len=:), allocatable :: words
 
-    words = 'the force of a die changes by '//to_text(100*force_along(balance), 3)//' % at the new mesh: several new ones agree ' &
-            //'that it was wrong on the old one (error of its stress: '//to_text(100*balance%old_error, 3)//' %)'
-  end function agreed_words
+    words = ''
+    if (balance%refused .or. .not. balance%restored) return
+    words = 'the force of a die changes by '//to_text(100*force_along(balance), 3)//' % at the new mesh: '
+    if (balance%agreed) then
+      words = words//'several new ones agree that it was wrong on the old one (error of its stress: ' &
+              //to_text(100*balance%old_error, 3)//' %)'
+    else if (force_change(balance) > error_limit(accept, balance)) then
+      words = words//'few nodes bear it, and before the contact grows it goes with the size of the elements there'
+    else
+      words = ''
+    end if
+  end function taken_up_words
 
   !> Change of the elastic energy over what was carried; where that is round-off, over what round-off may be.
   pure function energy_change(balance) result(change)
@@ -147,11 +217,11 @@ contains
     type(string_t) :: lines(3)
 
     associate (accept => scene%remesher%accept)
-      lines(1)%s = '  first residual '//held(balance%first_residual, accept%first_residual)//', iterations ' &
+      lines(1)%s = '  first residual '//held(balance%first_residual, residual_limit(accept, balance))//', iterations ' &
                    //to_text(balance%iterations)//' (limit '//to_text(accept%iterations)//')'
       lines(2)%s = '  equilibrium is left to the first step; change'
       if (balance%restored) lines(2)%s = '  change of die force '//held(force_change(balance), force_limit(accept, balance)) &
-                                         //', of elastic energy '//held(energy_change(balance), accept%energy_change)//','
+                                         //', of elastic energy '//held(energy_change(balance), energy_limit(accept, balance))//','
       lines(2)%s = lines(2)%s//' of depth '//held(balance%depth_change, accept%depth_change)
     end associate
     lines(3)%s = '  least scaled Jacobian '//held(balance%shape, bad_shape)//'; first residual: ' &
@@ -200,19 +270,19 @@ contains
     else if (balance%first_residual > max(without_correction, accept%first_residual)) then
       what = 'the matrix is singular: nothing holds a body, or a die under a force, on this mesh; contact that a single corner ' &
              //'of a die has with a side may have been lost'
-    else if (balance%first_residual > accept%first_residual) then
+    else if (balance%first_residual > residual_limit(accept, balance)) then
       what = 'the first residual is '//to_text(balance%first_residual, 3)//' of the stress, in the norm of energy, at most ' &
-             //to_text(accept%first_residual, 3)
-    else if (carried_change(balance) > lost_pressure) then
-      what = 'the pressures carried over miss the force of a die by '//percent(carried_change(balance), lost_pressure)
+             //to_text(residual_limit(accept, balance), 3)
+    else if (has_lost_force(accept, balance)) then
+      what = 'the pressures carried over miss the force of a die by '//percent(carried_change(balance), lost_limit(accept, balance))
     else if (.not. balance%restored) then
       return   ! the first step finds it, or the mesh is refused on probation
     else if (balance%iterations > accept%iterations) then
       what = to_text(balance%iterations)//' iterations to equilibrium, at most '//to_text(accept%iterations)
     else if (force_change(balance) > force_limit(accept, balance)) then
       what = 'the force of a die changes by '//percent(force_change(balance), force_limit(accept, balance))
-    else if (energy_change(balance) > accept%energy_change) then
-      what = 'the elastic energy changes by '//percent(energy_change(balance), accept%energy_change)
+    else if (energy_change(balance) > energy_limit(accept, balance)) then
+      what = 'the elastic energy changes by '//percent(energy_change(balance), energy_limit(accept, balance))
     end if
   end subroutine find_fault
 
@@ -227,7 +297,7 @@ contains
       stage = 'mesh'
     else if (balance%depth_change > scene%remesher%accept%depth_change) then
       stage = 'contour'
-    else if (carried_change(balance) > lost_pressure) then
+    else if (has_lost_force(scene%remesher%accept, balance)) then
       stage = 'contact'
     else
       stage = 'transfer'

@@ -3,7 +3,8 @@ module restart_report
   use errors, only: error_t
   use history, only: circumference
   use dies, only: is_deformable
-  use judge_remesh, only: carried_change, energy_change, force_alone, force_along, force_change, force_limit
+  use judge_remesh, only: carried_change, energy_change, energy_limit, force_alone, force_along, force_change, force_limit, &
+                          residual_limit
   use json_writer, only: json_t
   use residual_place, only: bad_shape
   use restore_balance, only: balance_t
@@ -67,10 +68,10 @@ contains
     call json%add('depth_change', balance%depth_change)
     call json%add('least_scaled_jacobian', balance%shape)
     associate (accept => scene%remesher%accept)
-      call json%add('first_residual_limit', accept%first_residual)
+      call json%add('first_residual_limit', residual_limit(accept, balance))
       call json%add('iterations_limit', accept%iterations)
       call json%add('force_change_limit', force_limit(accept, balance))
-      call json%add('energy_change_limit', accept%energy_change)
+      call json%add('energy_change_limit', energy_limit(accept, balance))
       call json%add('depth_change_limit', accept%depth_change)
       call json%add('least_scaled_jacobian_limit', bad_shape)
     end associate

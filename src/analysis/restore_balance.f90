@@ -54,6 +54,8 @@ module restore_balance
     real(wp) :: largest_force = 0.0_wp
     !> Error of the stress on the old mesh.
     real(wp) :: old_error = 0.0_wp
+    !> Share of the load that the nodes in contact have left open there (bearing_nodes).
+    real(wp) :: open_share = 0.0_wp
     !> Largest motion of a node over the size of the mesh.
     real(wp) :: motion = 0.0_wp
     !> Volume, elastic energy and plastic work before and after.
@@ -156,6 +158,7 @@ contains
     balance%restored = .not. parts%left > 0
     balance%largest_force = solution%largest_force
     balance%old_error = solution%estimate%previous_stress
+    balance%open_share = solution%estimate%previous_open
     balance%first_residual = relative_distance(work, max(balance%before%elastic_energy, balance%after%elastic_energy, &
                                                          balance%round_off))
     if (allocated(outcome%reason)) balance%reason = outcome%reason
@@ -183,11 +186,11 @@ contains
 
   !> The penalty of contact goes with the length of sides: at the depth that was kept, sides of another length carry another
   !> pressure. The multiplier takes the difference, so that every point begins with the pressure that was carried, be it closed or
-  !> one that lies between closed and open ones of the old mesh.
+  !> one that lies between closed and open ones of the old mesh. So does a node on the axis, whose state is that of a corner.
   subroutine keep_pressures(scene, solution)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(inout) :: solution
-    integer :: g, pressure, multiplier, status
+    integer :: g, pressure, multiplier, status, place
 
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g))
@@ -196,6 +199,15 @@ contains
         multiplier = group%variables(find_variable(group%variables, 'augmentation'))%first
         status = group%variables(find_variable(group%variables, 'contact_status'))%first
         where (nint(state%committed(status, :, :)) > 0 .or. state%committed(pressure, :, :) > 0)
+          state%committed(multiplier, :, :) = state%committed(multiplier, :, :) + state%committed(pressure, :, :) &
+                                              - state%trial(pressure, :, :)
+        end where
+        place = find_variable(group%variables, 'corner_place')
+        if (place == 0 .or. group%pairs > 0) cycle
+        place = group%variables(place)%first
+        pressure = group%variables(find_variable(group%variables, 'corner_pressure'))%first
+        multiplier = group%variables(find_variable(group%variables, 'corner_augmentation'))%first
+        where (abs(state%committed(place, :, :)) >= 1 .and. state%committed(pressure, :, :) > 0)
           state%committed(multiplier, :, :) = state%committed(multiplier, :, :) + state%committed(pressure, :, :) &
                                               - state%trial(pressure, :, :)
         end where

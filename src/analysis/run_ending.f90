@@ -14,7 +14,7 @@ module run_ending
   use floating_bodies, only: warn_of_floating_bodies, warn_of_idle_dies
   use heated_steels, only: warn_of_missing_austenite
   use held_steels, only: warn_of_held_steels
-  use judge_remesh, only: agreed_words
+  use judge_remesh, only: taken_up_words
   use kinds, only: wp
   use listing, only: close_listing, end_progress, list_lines
   use passed_planes, only: warn_of_passed_planes
@@ -80,9 +80,11 @@ contains
     type(solution_t), intent(in) :: solution
     type(run_t), intent(in) :: run
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
+    character(len=:), allocatable :: words
 
     if (allocated(run%balance)) then
-      if (run%balance%agreed) call add_text(warnings, agreed_words(run%balance))
+      words = taken_up_words(scene%remesher%accept, run%balance)
+      if (len(words) > 0) call add_text(warnings, words)
     end if
     call warn_of_confinement(scene, solution, warnings)
     call warn_of_passed_planes(scene, solution, warnings)

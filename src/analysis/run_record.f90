@@ -17,7 +17,8 @@ module run_record
   use own_contact, only: faces_itself
   use restore_balance, only: balance_t
   use results, only: results_t, save_fields
-  use scene, only: scene_t
+  use quadrature, only: line_rule
+  use scene, only: group_t, scene_t
   use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable
   use step_outcome, only: outcome_t
@@ -116,24 +117,51 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(contact_end_t), allocatable :: ends(:)
-    real(wp), allocatable :: x(:, :)
-    integer :: g, status, penetration
+    real(wp), allocatable :: x(:, :), depth(:, :)
+    integer, allocatable :: closed(:, :)
+    integer :: g
 
     allocate (ends(0))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%die == 0 .or. group%material == 0) cycle
         if (faces_itself(scene, group)) cycle
-        status = group%variables(find_variable(group%variables, 'contact_status'))%first
-        penetration = group%variables(find_variable(group%variables, 'penetration'))%first
+        call states_of_points(group, solution%groups(g)%committed, closed, depth)
         x = present_coordinates(scene, solution)
         call find_contact_ends(group, g, present_die(scene%dies(group%die), x), solution%fields(pilot_field)%value(:, group%die), &
-                               scene%mesh%coordinates, x, &
-                               nint(solution%groups(g)%committed(status, :, :)), &
-                               solution%groups(g)%committed(penetration, :, :), ends)
+                               scene%mesh%coordinates, x, closed, depth, ends)
       end associate
     end do
   end function ends_now
+
+  !> Status and depth of the points of a group; at a node on the axis, where points have no surface, those of the node itself, which
+  !> are the state of a corner in its place (axis_contact).
+  pure subroutine states_of_points(group, state, status, depth)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:, :, :)            !! (component, npoint, nside) [unit of each component]
+    integer, allocatable, intent(out) :: status(:, :)   !! (npoint, nside)
+    real(wp), allocatable, intent(out) :: depth(:, :)   !! (npoint, nside) [length]
+    real(wp), allocatable :: xi(:), weight(:)
+    integer :: place, of_corner, depth_of_corner, p
+
+    associate (variables => group%variables)
+      status = nint(state(variables(find_variable(variables, 'contact_status'))%first, :, :))
+      depth = state(variables(find_variable(variables, 'penetration'))%first, :, :)
+      place = find_variable(variables, 'corner_place')
+      if (place == 0 .or. group%pairs > 0) return
+      place = variables(place)%first
+      of_corner = variables(find_variable(variables, 'corner_contact_status'))%first
+      depth_of_corner = variables(find_variable(variables, 'corner_penetration'))%first
+    end associate
+    call line_rule(group%rule, xi, weight)
+    do p = 1, size(xi)
+      if (abs(xi(p)) < 1) cycle
+      where (nint(state(of_corner, p, :)) /= 0 .and. state(place, p, :)*xi(p) >= 1)
+        status(p, :) = nint(state(of_corner, p, :))
+        depth(p, :) = state(depth_of_corner, p, :)
+      end where
+    end do
+  end subroutine states_of_points
 
   pure function is_due(step, every) result(due)
     integer, intent(in) :: step, every

@@ -91,6 +91,7 @@ contains
       select case (words(k)%s)
       case ('RESIDUAL')
         call positive('the largest first residual, in the norm of energy', accept%first_residual)
+        accept%residual_is_given = .true.
       case ('ITERATIONS')
         call cursor%integer('the largest number of iterations to equilibrium', accept%iterations, lower=1)
       case ('FORCE')

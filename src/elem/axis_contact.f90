@@ -11,14 +11,16 @@
 !> sec. 6.3.
 !>
 !> Its state is that of the corner in the interval at the node (corner_contact). One of both acts, the node where it is deeper and
-!> presses: their areas are the same part of the side. Its place is exactly -1 or 1.
+!> presses: their areas are the same part of the side. Where the corner hands its load over to the node, the larger load acts: the
+!> point of a die on the axis has no share in the side, and at depths below 0, where a multiplier holds it, it is the deeper one.
+!> Its place is exactly -1 or 1.
 module axis_contact
   use closest_point, only: closest_point_t
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_status, at_xi, contact_block, &
+  use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_xi, contact_block, &
                            contact_point_t, no_surface, rest, share_to_contact
   use corner_contact, only: end_on_axis, press_corner
-  use corner_weights, only: share_of_corner
+  use corner_weights, only: area_of_disc, share_of_corner
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
@@ -35,8 +37,6 @@ module axis_contact
   real(wp), parameter :: own_share = 0.5_wp, deeper = 1.1_wp
   !> A die whose normal has less than this along the axis is a wall beside it.
   real(wp), parameter :: steepest = 0.05_wp
-  !> Area of the disc per radian, over the square of the chord.
-  real(wp), parameter :: disc = 0.125_wp
 
 contains
 
@@ -56,7 +56,7 @@ contains
     type(report_t), intent(inout) :: report
     type(report_t) :: of_corner, of_node
     real(wp), dimension(size(trial, 1)) :: node
-    real(wp) :: f(ndof, 2), matrix(ndof, ndof, 2)
+    real(wp) :: f(ndof, 2), matrix(ndof, ndof, 2), share
     integer :: k, p, n
     logical :: met, corner_acts, node_acts
 
@@ -72,7 +72,14 @@ contains
     call press_node(die, law, material, drivers(:, :, p), side, xi, k, committed, node, f(:, 2), matrix(:, :, 2), of_node, met)
     corner_acts = nint(trial(n + at_status, p)) /= contact_open
     node_acts = met .and. nint(node(n + at_status)) /= contact_open
-    if (corner_acts .and. node_acts) node_acts = node(n + at_penetration) > trial(n + at_penetration, p)
+    if (corner_acts .and. node_acts) then
+      share = share_of_corner(trial(size(trial, 1), p), of_body=.false.)
+      if (share < 1) then
+        node_acts = node(n + at_pressure) >= share*trial(n + at_pressure, p)
+      else
+        node_acts = node(n + at_penetration) > trial(n + at_penetration, p)
+      end if
+    end if
     if (met .and. (node_acts .or. .not. corner_acts)) then
       trial(:, p) = node
       force = force + f(:, 2)
@@ -198,7 +205,8 @@ contains
     disc_point%dlength = 0
     disc_point%dthickness = 0
     before = force
-    call press(law, material, drivers, side, place, disc_point, closest, allowed, disc, committed, trial, force, stiffness)
+    call press(law, material, drivers, side, place, disc_point, closest, allowed, area_of_disc(1.0_wp), committed, trial, force, &
+               stiffness)
     if (.not. (side%tangent .and. by_next) .or. nint(trial(at_status)) == contact_open) return
     pressure = committed(at_augmentation) + side%penalty(1)*(closest%d - allowed)
     if (.not. abs(pressure) > 0) return
@@ -222,7 +230,7 @@ contains
 
     area = share*area_at(place, section, x)
     if (abs(place) < 1) return
-    if (thickness_at(section, x(:, merge(1, 3, place < 0))) <= no_surface*chord) area = disc*chord**2
+    if (thickness_at(section, x(:, merge(1, 3, place < 0))) <= no_surface*chord) area = area_of_disc(chord)
   end function area_at_corner
 
   !> Share of its pressure with which the state of a corner acts: all of it of a node on the axis, which is at an end of its side.

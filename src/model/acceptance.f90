@@ -21,6 +21,8 @@ module acceptance
     real(wp) :: force_change = 0.1_wp, energy_change = 0.2_wp
     !> The deck gives the limit of the force; otherwise it is the error of the stress on the old mesh where that is larger.
     logical :: force_is_given = .false.
+    !> It gives the limit of the first residual.
+    logical :: residual_is_given = .false.
     !> Change of the depth in a die, in the mean of its pressures, over the penetration the deck allows and a thousandth of the side
     !> (found: up to 0.3): above 1 the contour is another one than that which carried the pressures.
     real(wp) :: depth_change = 1.0_wp

@@ -8,11 +8,14 @@
 !> An edge of another body goes over to the next side: on its way past the node it acts on both, on each as if that went on beyond
 !> its end, with shares whose sum is one. Where the body is bent round the edge, with one side along either face, each side needs
 !> the force of its own face; the points of the node, on one of them, cannot give both.
+!>
+!> A node on the axis, which has the state of a corner at exactly -1 or 1 (axis_contact), stands for the disc that reaches to the
+!> middle of its side.
 module corner_weights
   use kinds, only: wp
   implicit none
   private
-  public :: corner_length, corner_weight, handing_over, interval_before, place_within, share_of_corner
+  public :: area_of_disc, corner_length, corner_weight, handing_over, interval_before, place_within, share_of_corner
 
   !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there; an edge of a body one
   !> that is nearer to it or as far beyond it to the next side.
@@ -42,6 +45,14 @@ contains
 
     within = max(-1.0_wp, min(1.0_wp, place))
   end function place_within
+
+  !> Area per radian of the disc of a node on the axis, whose side has this chord: (L/2)**2/2.
+  elemental function area_of_disc(chord) result(area)
+    real(wp), intent(in) :: chord   !! [length]
+    real(wp) :: area                !! [length**2]
+
+    area = 0.125_wp*chord**2
+  end function area_of_disc
 
   !> Weight of a corner at a position on the side, in the interval before a point.
   pure function corner_weight(xi, p, place, of_body) result(weight)

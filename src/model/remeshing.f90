@@ -67,6 +67,8 @@ module remeshing
     integer :: began = 0, last_stop = 0
     !> Error of the stress on the mesh before, when it was replaced; 0 for the deck's own mesh.
     real(wp) :: previous_stress = 0.0_wp
+    !> Share of the load that the nodes in contact on that mesh have left open (bearing_nodes).
+    real(wp) :: previous_open = 0.0_wp
     !> Error of the stress that a new mesh has shown first: when it began, then when its flow has forgotten the stresses carried to
     !> it, which the transfer has smoothed; 0 for the deck's own mesh.
     real(wp) :: first_stress = 0.0_wp

@@ -27,6 +27,7 @@ contains
     call visitor%member('last_stop', self%last_stop, recomputed, low=0)
     call visitor%member('first_stress', self%first_stress, recomputed, '-', low=0.0_wp)
     call visitor%member('previous_stress', self%previous_stress, recomputed, '-', low=0.0_wp)
+    call visitor%member('previous_open', self%previous_open, recomputed, '-', low=0.0_wp)
     call visitor%member('carried_stress', self%carried_stress, recomputed, '-', low=0.0_wp)
     call visitor%member('stress_left', self%stress_left, recomputed, '-', low=0.0_wp, high=1.0_wp)
     n = size(self%triggers)
