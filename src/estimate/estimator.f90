@@ -16,9 +16,10 @@ module estimator
   use loads, only: multiplier_at
   use quad8_geometry, only: derivatives, quad8_rule_t
   use recovered_errors, only: fields_of_rule, fields_t, missing_squares, ncomp, npoint
-  use scene, only: is_solid, scene_t
+  use scene, only: group_t, host_of, is_solid, role_body, role_second, scene_t, solid_elements
   use sections, only: thickness_at
   use solution, only: solution_t
+  use state_variables, only: find_variable
   use vertex_patches, only: find_patches, patches_t
   implicit none
   private
@@ -88,16 +89,38 @@ contains
     integer :: g
 
     do g = 1, size(yes)
-      yes(g) = is_solid(scene%groups(g)) .and. scene%groups(g)%material == material
+      yes(g) = bears_stress(scene%groups(g)) .and. scene%groups(g)%material == material
     end do
   end function is_part
+
+  !> A body, or what is added to one (ADDEL), whose points have a stress: one of heat alone has none.
+  pure function bears_stress(group) result(yes)
+    type(group_t), intent(in) :: group
+    logical :: yes
+
+    yes = any(group%role == [role_body, role_second])
+    if (yes) yes = find_variable(group%variables, 'stress') > 0
+  end function bears_stress
+
+  !> Elements of bodies before the first one of a group.
+  pure function elements_before(scene, g) result(n)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g   !! number of the group
+    integer :: n
+    integer :: k
+
+    n = 0
+    do k = 1, host_of(scene, g) - 1
+      if (is_solid(scene%groups(k))) n = n + size(scene%groups(k)%connectivity, 2)
+    end do
+  end function elements_before
 
   pure subroutine gather_part(scene, material, part)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: material
     type(part_t), intent(out) :: part
     logical :: mine(size(scene%groups))
-    integer :: g, e, n, all, total
+    integer :: g, e, n, before, total
 
     mine = is_part(scene, material)
     total = 0
@@ -107,17 +130,15 @@ contains
     part%material = material
     allocate (part%connectivity(8, total), part%group(total), part%element(total), part%place(total), part%rule(total))
     n = 0
-    all = 0
     do g = 1, size(mine)
-      if (.not. is_solid(scene%groups(g))) cycle
+      if (.not. mine(g)) cycle
+      before = elements_before(scene, g)
       do e = 1, size(scene%groups(g)%connectivity, 2)
-        all = all + 1
-        if (.not. mine(g)) cycle
         n = n + 1
         part%connectivity(:, n) = scene%groups(g)%connectivity(:, e)
         part%group(n) = g
         part%element(n) = e
-        part%place(n) = all
+        part%place(n) = before + e
         part%rule(n) = merge(1, 2, scene%groups(g)%rule%n == 4)
       end do
     end do
@@ -175,9 +196,9 @@ contains
     real(wp), intent(out) :: error   !! share of the stress, in its norm
     real(wp), allocatable :: missing(:, :), whole(:, :), volume(:), error_of(:), elastic(:)
     real(wp) :: stiffness
-    integer :: n, k
+    integer :: n
 
-    n = sum([(size(self%parts(k)%place), k=1, size(self%parts))])
+    n = solid_elements(scene)
     allocate (missing(2, n), whole(2, n), volume(n), error_of(n), elastic(n))
     call gather_squares(self, scene, solution, missing, whole, volume, elastic, stiffness)
     call relate(missing(1, :), whole(1, :), volume, sum(whole(1, :)) > at_rest**2*stiffness, error, error_of)
@@ -202,6 +223,11 @@ contains
       section = solution%fields(section_field)%value(:, 1)
     end if
     stiffness = 0
+    ! where there is no stress there is nothing to weigh
+    missing = 0
+    whole = 0
+    elastic = 0
+    volume = tiny(volume)
     do k = 1, size(self%parts)
       call of_part(self, self%parts(k), scene, solution, x, section, missing, whole, volume, elastic, stiffness)
     end do

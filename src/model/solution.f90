@@ -11,7 +11,7 @@ module solution
   use path_record, only: path_record_t, start_path
   use remesher_options, only: number_of_cuts
   use remeshing, only: estimate_t
-  use scene, only: is_solid, scene_t
+  use scene, only: is_solid, role_body, role_second, scene_t
   use state_variables, only: total_components
   use work_books, only: work_t
   implicit none
@@ -139,7 +139,7 @@ contains
           end do
         end do
         state%trial = state%committed
-        n = merge(size(group%connectivity, 2), 0, scene%follows_path .and. is_solid(group))
+        n = merge(size(group%connectivity, 2), 0, scene%follows_path .and. any(group%role == [role_body, role_second]))
         allocate (state%error(size(state%committed, 1), npoint, n), source=0.0_wp)
       end associate
     end do

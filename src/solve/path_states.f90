@@ -9,7 +9,7 @@ module path_states
   use fields, only: displacement_field, section_field
   use kinds, only: wp
   use law_api, only: law_t, solid_law
-  use scene, only: scene_t
+  use scene, only: role_body, role_second, scene_t
   use solution, only: group_state_t, solution_t
   use step_instants, only: make_instant
   use timers, only: ledger_t
@@ -28,7 +28,7 @@ contains
 
     yes = .false.
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%material == 0) cycle
+      if (scene%groups(g)%material == 0 .or. all(scene%groups(g)%role /= [role_body, role_second])) cycle
       associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
         yes(g) = law%kind == solid_law .and. associated(law%flow_stress)
       end associate
