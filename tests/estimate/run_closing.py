@@ -230,6 +230,16 @@ class Closing(unittest.TestCase):
         for text in (listing, page):
             self.assertIn("stress hidden by its error: no estimate above 100 %", text)
 
+    def test_stress_of_what_is_added_to_a_body_of_heat(self):
+        """A beam that is a body with heat added to it, or a body of heat with mechanics added: the same errors."""
+        heat = "LAW    warm HEAT\n   50. 3.6\n"
+        beam = REST.replace("FIXED ", heat + "ADDEL  part PL8TM warm\nFIXED ", 1)
+        added = REST.replace("PL8LS 4 m", "PL8TM 4 warm").replace("FIXED ", heat + "ADDEL  part PL8LS m\nFIXED ", 1)
+        (one, _, _), (other, _, _) = self.what_is_told("beam", beam), self.what_is_told("added", added)
+        for place, name in (("space", "stress_pct"), ("path", "stress_pct"), ("path", "motion_pct")):
+            self.assertGreater(one[place][name], 0)
+            self.assertAlmostEqual(other[place][name]/one[place][name], 1, delta=1e-6, msg=name)
+
     def test_stress_of_the_path_in_part(self):
         """A strip that necks in steps of a quarter: the error was as large as the stress, and what is left is told as a part."""
         told, listing, page = self.what_is_told("necks", NECKS)
