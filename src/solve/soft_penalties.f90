@@ -85,23 +85,22 @@ contains
     type(scene_t), intent(in) :: scene
     integer :: g
 
-    has_allowed = .false.
-    do g = 1, size(scene%groups)
-      if (scene%groups(g)%role == role_contact) has_allowed = has_allowed .or. follows(scene, g)
-    end do
+    has_allowed = any([(follows(scene, g), g=1, size(scene%groups))])
   end function has_allowed
 
-  !> The penalties of a group of contact follow from an allowed penetration.
+  !> A group is one of contact whose penalties follow from an allowed penetration.
   pure logical function follows(scene, g)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g
     type(penalties_t) :: given
 
+    follows = scene%groups(g)%role == role_contact
+    if (.not. follows) return
     given = penalties_of_card(scene%materials(scene%groups(g)%material))
     follows = .not. given%normal > 0
   end function follows
 
-  !> Largest pressure of such contact over that which makes the allowed penetration with the whole penalties.
+  !> Largest pressure of such contact, or tension of glue, over that which makes the allowed penetration with the whole penalties.
   pure function bearing(scene, solution, trial) result(largest)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -111,7 +110,6 @@ contains
 
     largest = 0
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%role /= role_contact) cycle
       if (.not. follows(scene, g)) cycle
       if (trial) then
         call find_largest(solution%groups(g)%trial)
@@ -129,14 +127,14 @@ contains
 
       if (size(state) == 0) return
       corners = find_variable(scene%groups(g)%variables, 'corner_place') > 0
-      pressure = maxval(state(at_pressure, :, :))
-      if (corners) pressure = max(pressure, maxval(state(contact_block(corners, size(state, 1)) + at_pressure, :, :)))
+      pressure = maxval(abs(state(at_pressure, :, :)))
+      if (corners) pressure = max(pressure, maxval(abs(state(contact_block(corners, size(state, 1)) + at_pressure, :, :))))
       largest = max(largest, pressure/(usual_bearing*scene%groups(g)%modulus))
     end subroutine find_largest
 
   end function bearing
 
-  !> Largest depth of points in such contact in the trial state [length].
+  !> Largest depth of points in such contact in the trial state, or gap of glue [length].
   pure function depth(scene, solution) result(largest)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -145,11 +143,10 @@ contains
 
     largest = 0
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%role /= role_contact) cycle
       if (.not. follows(scene, g)) cycle
       associate (state => solution%groups(g)%trial)
         if (size(state) == 0) cycle
-        largest = max(largest, maxval(state(at_penetration, :, :), mask=nint(state(at_status, :, :)) /= contact_open))
+        largest = max(largest, maxval(abs(state(at_penetration, :, :)), mask=nint(state(at_status, :, :)) /= contact_open))
       end associate
     end do
   end function depth
