@@ -15,6 +15,8 @@ module iteration_history
     real(wp) :: force_norm = 0.0_wp, displacement_norm = 0.0_wp, line_search = 1.0_wp
     !> Points opened, closed, stuck or slipped the other way.
     logical :: contact_changed = .false.
+    !> Points began or ceased to flow.
+    logical :: flow_changed = .false.
     !> Iterations on the unknowns of a patch that was eliminated (nonlinear_elimination); 0 where none was.
     integer :: inner = 0
     !> The whole correction was taken, whatever the residual, after searches that were all short.
@@ -166,12 +168,12 @@ contains
     if (in_circles) in_circles = history(n)%force_norm > circling*minval(history(2:n - 1)%force_norm)
   end function in_circles
 
-  !> Contact changed, or the state is past a limit point: the residual need not fall.
+  !> Contact or the points that flow changed, or the state is past a limit point: the residual need not fall.
   elemental function is_under_way(line)
     type(iteration_t), intent(in) :: line
     logical :: is_under_way
 
-    is_under_way = line%contact_changed .or. line%watched .or. line%past_limit
+    is_under_way = line%contact_changed .or. line%flow_changed .or. line%watched .or. line%past_limit
   end function is_under_way
 
   !> The residual falls fast: an iteration or two are missing.

@@ -15,6 +15,7 @@ module newton
   use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
   use external_loads, only: external_forces
   use fields, only: displacement_field
+  use flow_changes, only: flow_set, note_flow
   use heat_correction, only: follow_content, is_steep
   use iteration_history, only: caught, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, &
                                iteration_t, judge, was_given_time, went_round
@@ -106,6 +107,8 @@ contains
     !> Status of all points of contact, and what the wall of the axis holds, as they were.
     integer, allocatable :: contact(:)
     logical, allocatable :: held(:, :)
+    !> Points that flow, as they were.
+    logical, allocatable :: flows(:)
     !> Of each die: points that touch it, work on its missing motion, it lags behind its motion, it has left the part.
     integer :: touched(size(scene%dies))
     real(wp) :: work(size(scene%dies))
@@ -204,6 +207,7 @@ contains
       first = 1
       correction = 0
       allocate (contact, source=contact_set(scene, solution))
+      allocate (flows, source=flow_set(scene, solution))
       held = equations%wall%held
       left_by = .false.
       afresh = .false.
@@ -325,6 +329,7 @@ contains
       end if
       line%watched = caught(outcome%history(first:)) .and. manner%whole .or. equations%let_go
       call note_contact(scene, solution, contact, line%contact_changed)
+      call note_flow(scene, solution, flows, line%flow_changed)
       line%contact_changed = line%contact_changed .or. followed .or. steep .or. any(held .neqv. equations%wall%held)
       held = equations%wall%held
       correction = line%line_search*correction
@@ -424,8 +429,10 @@ contains
       correction = 0
       missing = 0
       line%contact_changed = .false.
+      line%flow_changed = .false.
       line%watched = .false.
       contact = contact_set(scene, solution)
+      flows = flow_set(scene, solution)
       held = equations%wall%held
     end subroutine start_again
 

@@ -12,6 +12,7 @@ import time
 sys.dont_write_bytecode = True
 import hard_free  # noqa: E402
 import hard_heat  # noqa: E402
+import hard_loads  # noqa: E402
 import hard_mechanics  # noqa: E402
 from hard_support import Hard  # noqa: E402
 
@@ -25,7 +26,7 @@ def main(words):
     wanted = [word for word in words if not word.startswith("-")]
     rows = []
     print("| %s |\n|%s" % (" | ".join(TITLES), "---|"*len(TITLES)))
-    for case in hard_mechanics.CASES + hard_free.CASES + hard_heat.CASES:
+    for case in hard_mechanics.CASES + hard_free.CASES + hard_loads.CASES + hard_heat.CASES:
         if any(word in case.name for word in wanted) if wanted else ("-a" in words or not case.long):
             begun, steps, iterations = time.time(), checks.steps, checks.iterations
             try:
