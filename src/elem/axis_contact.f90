@@ -31,7 +31,7 @@ module axis_contact
   use sections, only: thickness_at
   implicit none
   private
-  public :: press_axis, area_at_corner, share_at_corner
+  public :: press_axis, area_at_corner, depth_of_bearing, share_at_corner
 
   !> It acts on what is deeper than this share of the allowed penetration, and than the next point times this factor.
   real(wp), parameter :: own_share = 0.5_wp, deeper = 1.1_wp
@@ -188,7 +188,7 @@ contains
     real(wp) :: allowed, before(ndof), dallowed(ndof), n(2), lever(2), pressure, depth
     logical :: by_next
 
-    allowed = own_share*allowed_penetration(material)*side%length
+    allowed = depth_of_bearing(material, side%length)
     by_next = .false.
     if (next%piece > 0) by_next = deeper*next%d > allowed
     if (by_next) allowed = deeper*next%d
@@ -218,6 +218,15 @@ contains
     ! the pressure is linear in the depth
     stiffness = stiffness - side%penalty(1)*deeper/pressure*spread(force - before, 2, ndof)*spread(dallowed, 1, ndof)
   end subroutine hold
+
+  !> Depth along the axis beyond which the node bears where no other place of its side is as deep.
+  pure function depth_of_bearing(material, chord) result(depth)
+    type(material_t), intent(in) :: material   !! of the contact
+    real(wp), intent(in) :: chord              !! of the side [length]
+    real(wp) :: depth                          !! [length]
+
+    depth = own_share*allowed_penetration(material)*chord
+  end function depth_of_bearing
 
   !> Area on which the state of a corner acts: of its share of the side, or the disc of a node on the axis.
   pure function area_at_corner(place, share, section, x, chord) result(area)

@@ -4,9 +4,13 @@
 !> it. But where it comes to is known: along the force, to the first side that it meets. There the step starts, just in touch; the
 !> equilibrium is found from there as ever. A die that meets no side so stays where it is.
 !>
+!> The node of a round part on the axis bears nothing before it is a little way in the die (axis_contact). Where a pointed die
+!> meets it alone, the step starts where it bears.
+!>
 !> The way is made of steps as long as the least gap (conservative advancement: B. Mirtich, PhD thesis, Berkeley 1996, ch. 2): none
 !> goes too far, and along the normal of the die there is one.
 module seating
+  use axis_contact, only: depth_of_bearing
   use closest_point, only: closest_point_t
   use contact_point, only: touching
   use curve_search, only: closest_facing_point
@@ -14,8 +18,9 @@ module seating
   use dofs, only: dofs_t
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
+  use plane_vectors, only: turned
   use resting_dies, only: has_spring, idle_dies
-  use scene, only: role_contact, scene_t
+  use scene, only: axisymmetric, role_contact, scene_t
   use solution, only: present_coordinates, solution_t
   use vectors, only: length_of
   implicit none
@@ -131,7 +136,7 @@ contains
   end subroutine find_way
 
   !> Least gap between a die and the nodes of the sides that face it, below 0 for a depth, and the length of that side; huge where
-  !> no side faces it.
+  !> no side faces it. To the node on the axis it is the gap to where that bears.
   pure subroutine find_gap(scene, x, die, pilot, reach, gap, side)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)      !! (2, nnode) [length]
@@ -139,14 +144,14 @@ contains
     real(wp), intent(in) :: pilot(3)     !! (x, y, angle) [length and radian]
     real(wp), intent(in) :: reach        !! [length]
     real(wp), intent(out) :: gap, side   !! [length]
-    real(wp) :: local(2, 3), chord(2), length
+    real(wp) :: local(2, 3), chord(2), length, depth
     type(closest_point_t) :: closest
     integer :: g, e, i
 
     gap = huge(gap)
     side = 0
     do g = 1, size(scene%groups)
-      if (scene%groups(g)%role /= role_contact .or. scene%groups(g)%die /= die) cycle
+      if (scene%groups(g)%role /= role_contact .or. scene%groups(g)%die /= die .or. scene%groups(g)%material == 0) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
         local = in_pilot_axes(x(:, scene%groups(g)%connectivity(:, e)), pilot)
         chord = local(:, 3) - local(:, 1)
@@ -155,12 +160,35 @@ contains
           call closest_facing_point(scene%dies(die), local(:, i), [-chord(2), chord(1)]/length, reach, closest)
           ! contact is sought within the length of a side
           if (closest%piece == 0 .or. closest%d > length) cycle
-          if (-closest%d > gap) cycle
-          gap = -closest%d
+          depth = closest%d
+          if (is_on_axis(scene%groups(g)%connectivity(i, e))) depth = depth - depth_to_bear(g)
+          if (-depth > gap) cycle
+          gap = -depth
           side = length
         end do
       end do
     end do
+
+  contains
+
+    !> A node of a round part that stays on the axis.
+    pure function is_on_axis(node) result(yes)
+      integer, intent(in) :: node
+      logical :: yes
+
+      yes = scene%plane_state == axisymmetric .and. abs(x(1, node)) <= touching*length
+    end function is_on_axis
+
+    !> Depth, along the normal of the die, at which the node on the axis bears.
+    pure function depth_to_bear(g) result(depth)
+      integer, intent(in) :: g   !! group of contact
+      real(wp) :: depth          !! [length]
+      real(wp) :: normal(2)
+
+      normal = turned(closest%normal, pilot(3))
+      depth = abs(normal(2))*depth_of_bearing(scene%materials(scene%groups(g)%material), length)
+    end function depth_to_bear
+
   end subroutine find_gap
 
 end module seating
