@@ -5,8 +5,9 @@
 !> Without inertia it has no reason to go on: the prediction of a step leaves such a body where it is, and until a contact closes in
 !> the step the diagonals of its equations are a little larger, as nothing else resists it and the matrix would be singular. That
 !> changes no force. One that loses its contact within a step may be carried off by round-off of the forces: where a correction is
-!> large beside the whole scene, or the matrix is singular, it is found again with such diagonals. Bodies that supports hold in X
-!> and in Y (axisymmetric ones in Y) have no such motion, and are not looked at.
+!> large beside the whole scene, or the matrix is singular, it is found again with such diagonals. Bodies that supports or springs
+!> hold in X and in Y (axisymmetric ones in Y) have no such motion, and are not looked at: springs are far softer than the diagonals
+!> are larger.
 module resting_bodies
   use bodies, only: bodies_of_nodes
   use contact_point, only: at_between, at_piece, at_pressure, contact_block, is_in_contact
@@ -27,7 +28,7 @@ module resting_bodies
 
 contains
 
-  !> The body of every node that supports do not hold (nnode), 0 for other nodes; of no size where there is none.
+  !> The body of every node that supports and springs do not hold (nnode), 0 for other nodes; of no size where there is none.
   subroutine find_loose_bodies(scene, dofs, loose)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
@@ -52,6 +53,9 @@ contains
         end do
       end do
     end associate
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%is_spring) held(scene%groups(g)%direction, body(scene%groups(g)%connectivity(1, :))) = .true.
+    end do
     ! no ring moves along r as a whole
     if (scene%plane_state == axisymmetric) held(1, :) = .true.
     body = merge(0, body, all(held(:, body), 1) .or. .not. of_element)
