@@ -18,6 +18,7 @@ module accept_step
   use kinds, only: wp
   use path_record, only: note_path_step
   use phase_books, only: book_fractions
+  use resting_bodies, only: work_of_drag
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use spring_check, only: has_body_springs
@@ -51,6 +52,7 @@ contains
     given_before = solution%work%dies + solution%work%supports
     call book_work(equations, outcome%du, solution)
     solution%work%damping = solution%work%damping + work_of_damping(equations, dt, outcome%du)
+    solution%work%drag = solution%work%drag + work_of_drag(equations, outcome%du)
     call ease_damping(scene, equations, dt, outcome%du, solution%work%dies + solution%work%supports - given_before, solution)
     call book_reactions(scene, equations, solution%time + dt, solution%fields)
     call book_heat(scene, equations, dt, solution)

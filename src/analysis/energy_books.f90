@@ -202,7 +202,7 @@ contains
 
     associate (work => solution%work)
       missing = solution%external_work + work%heat + work%overlap + work%remeshing &
-                - work%elastic - work%flow - solution%friction_work - work%contact - work%damping
+                - work%elastic - work%flow - solution%friction_work - work%contact - work%damping - work%drag
     end associate
   end function missing_energy
 

@@ -9,7 +9,9 @@ module floating_bodies
   use equations, only: equations_t
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
-  use resting_bodies, only: mark_acted_on
+  use law_api, only: law_t
+  use loose_bodies, only: mark_acted_on
+  use resting_bodies, only: light
   use scene, only: group_t, is_solid, role_contact, scene_t
   use scene_as_it_stands, only: present_scene
   use solution, only: solution_t
@@ -24,11 +26,15 @@ module floating_bodies
   !> as is that of no load worth the name (the weight of 1 mm of steel: 4e-10).
   real(wp), parameter :: unstrained = 1.0e-10_wp
 
+  !> Drag on what nothing holds took more than this share of the work.
+  real(wp), parameter :: of_drag = 0.1_wp
+
 contains
 
   !> A line for each body that neither a support, a spring, a load nor a contact acts on, added to the warnings of a run at its end.
-  subroutine warn_of_floating_bodies(scene, loose, solution, warnings)
+  subroutine warn_of_floating_bodies(scene, laws, loose, solution, warnings)
     type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
     integer, intent(in) :: loose(:)   !! (nnode) the body of every node that supports do not hold, 0 for others; or of no size
     type(solution_t), intent(in) :: solution
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning) lines
@@ -37,7 +43,7 @@ contains
     integer :: g
 
     if (size(loose) == 0) return
-    call mark_acted_on(scene, solution, loose, solution%time, acted_on)
+    call mark_acted_on(scene, laws, solution, loose, solution%time, light, acted_on)
     told = acted_on
     told(0) = .true.
     do g = 1, size(scene%groups)
@@ -82,8 +88,10 @@ contains
 
     if (size(warnings) > 0 .or. .not. scene%fields(displacement_field)%declared) return
     nothing = energy_without_strain(scene, equations, volume, unstrained)
-    if (solution%work%passed > energy_without_strain(scene, equations, volume) &
-        .and. (solution%worst_penetration > 0 .or. solution%work%elastic > nothing .or. solution%work%flow > nothing)) return
+    associate (work => solution%work)
+      if (work%passed > energy_without_strain(scene, equations, volume) .and. work%drag < of_drag*work%passed &
+          .and. (solution%worst_penetration > 0 .or. work%elastic > nothing .or. work%flow > nothing)) return
+    end associate
     do k = 1, size(scene%dies)
       if (is_deformable(scene%dies(k))) cycle
       if (.not. any(abs(solution%fields(pilot_field)%value(:, k) - scene%dies(k)%pilot) > 0)) cycle

@@ -95,7 +95,7 @@ contains
     call warn_of_webs(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)
     call warn_of_held_steels(scene, solution, warnings)
-    call warn_of_floating_bodies(scene, run%equations%loose, solution, warnings)
+    call warn_of_floating_bodies(scene, run%equations%laws, run%equations%loose, solution, warnings)
     call warn_of_crossed_bodies(scene, run%equations%free_sides, solution, warnings)
     call warn_of_idle_dies(scene, run%equations, solution, run%totals%volume, warnings)
   end subroutine warn_at_end

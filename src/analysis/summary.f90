@@ -127,6 +127,7 @@ contains
       call json%add('friction', factor*solution%friction_work)
       call json%add('contact', factor*work%contact)
       call json%add('damping', factor*work%damping)
+      call json%add('drag', factor*work%drag)
       call json%add('springs', factor*spring_energy(scene, solution))
       call json%add('overlap', factor*work%overlap)
       call json%add('remeshing', factor*work%remeshing)

@@ -21,6 +21,7 @@ contains
     call visitor%member('flow', self%flow, kept, 'energy')
     call visitor%member('contact', self%contact, kept, 'energy')
     call visitor%member('damping', self%damping, kept, 'energy', low=0.0_wp)
+    call visitor%member('drag', self%drag, kept, 'energy', low=0.0_wp)
     call visitor%member('overlap', self%overlap, kept, 'energy')
     call visitor%member('elastic', self%elastic, kept, 'energy')
     call visitor%member('remeshing', self%remeshing, kept, 'energy')

@@ -16,6 +16,8 @@ module work_books
     real(wp) :: contact = 0.0_wp
     !> Taken by the viscous forces of steps that are damped [energy].
     real(wp) :: damping = 0.0_wp
+    !> Taken by the drag on bodies that nothing holds and nothing loads [energy].
+    real(wp) :: drag = 0.0_wp
     !> Brought in by parts that lay in a die at the start [energy].
     real(wp) :: overlap = 0.0_wp
     !> Elastic energy at the last instant, and what it was given other than by a step: by a new mesh [energy].

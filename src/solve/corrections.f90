@@ -6,7 +6,7 @@ module corrections
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
   use linear_solver, only: factorise, solve_linear
-  use resting_bodies, only: hold_loose, motion_of_loose
+  use loose_bodies, only: hold_loose, motion_of_loose
   use resting_dies, only: hold_free_dies
   use solves, only: solve_t
   implicit none

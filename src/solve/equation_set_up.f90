@@ -19,7 +19,7 @@ module equation_set_up
   use own_crossings, only: list_free_sides
   use patches, only: map_patches
   use pairs, only: pairs_differ, pairs_t, start_pairs
-  use resting_bodies, only: find_loose_bodies
+  use loose_bodies, only: find_loose_bodies
   use scene, only: is_solid, role_load_factor, role_side_load, role_spring, role_volume_load, scene_t
   use solution, only: solution_t
   use solves, only: list_solves, number_equations, quantities_of, set_up_pattern
@@ -62,7 +62,7 @@ contains
     call list_free_sides(scene, equations%free_sides)
     call find_loose_bodies(scene, equations%dofs, equations%loose)
     allocate (equations%slides(3, size(scene%dies)), source=.false.)
-    allocate (equations%resting(0))
+    allocate (equations%drag(equations%dofs%ndof), source=0.0_wp)
     call list_solves(scene%fields, scene%strategy%coupling, equations%solves)
     do s = 1, size(equations%solves)
       call choose_solver(equations%solves(s)%solver, scene%strategy%linear_solver)

@@ -70,10 +70,12 @@ module equations
     !> falls in turns. A search would stop where the stretch begins: corrections are taken whole, and most of the way is made at
     !> once. Not where the stress depends on the way (hypoelastic).
     logical :: let_go = .false.
-    !> Bodies of nodes that supports do not hold, of no size where there is none (resting_bodies).
+    !> Bodies of nodes that supports do not hold, of no size where there is none (loose_bodies).
     integer, allocatable :: loose(:)
-    !> Unknowns at rest in the present step (ndof); of no size where no body is loose.
-    logical, allocatable :: resting(:)
+    !> Drag on loose bodies that nothing presses at the start of the present step (ndof): force over motion (resting_bodies).
+    real(wp), allocatable :: drag(:)
+    !> It is so many times the usual one in the next attempt at a step: grows while attempts fail.
+    real(wp) :: more_drag = 1.0_wp
     !> Components of pilots that friction alone holds, and whose points all slide, in the last correction (3, ndie).
     logical, allocatable :: slides(:, :)
     type(ledger_t) :: timers

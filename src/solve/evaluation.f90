@@ -8,7 +8,6 @@ module evaluation
   use fields, only: displacement_field
   use kinds, only: wp
   use matrix_pattern, only: add_to_diagonal, matrix_pattern_t
-  use resting_bodies, only: hold_resting
   use round_off_floors, only: set_floors
   use scene, only: scene_t
   use solution, only: solution_t
@@ -39,7 +38,7 @@ contains
     logical, intent(in), optional :: points_alone           !! sides press on dies at their points alone
     type(instant_t) :: instant
     real(wp), allocatable :: now(:, :)
-    logical :: active(size(scene%groups)), damped
+    logical :: active(size(scene%groups)), damped, dragged
     integer :: timer
 
     call fit_to_load(equations%team)
@@ -80,11 +79,12 @@ contains
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
       damped = allocated(equations%damping) .and. dt > 0 .and. solve%own(displacement_field)
       if (damped) equations%force = equations%force + equations%damping*du/dt
+      dragged = solve%own(displacement_field) .and. any(equations%drag > 0)
+      if (dragged) equations%force = equations%force + equations%drag*du
       if (tangent) then
         call gather_matrix(solve%pattern, equations%buffers, solve%values)
         if (damped) call add_diagonal(solve%pattern, solve%equation, equations%damping/dt, solve%values)
-        call hold_resting(scene, equations%dofs, solution, equations%loose, solve%pattern, solve%equation, equations%resting, &
-                          solve%values)
+        if (dragged) call add_diagonal(solve%pattern, solve%equation, equations%drag, solve%values)
       end if
     end associate
     call equations%timers%stop(timer)

@@ -27,6 +27,7 @@ module newton
   use onset_motion, only: add_missing
   use predictor, only: lagging_dies, leaving_dies, predict, work_of_dies
   use pseudo_transient, only: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
+  use resting_bodies, only: strengthen_drag
   use scene, only: scene_t
   use soft_contact, only: begin_softly, end_softly, is_stage_done, stiffen
   use soft_penalties, only: press_too_softly, raise_penalties
@@ -445,6 +446,7 @@ contains
       outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
       if (equations%solves(equations%now)%own(displacement_field)) equations%without_patches = .not. outcome%converged &
         .and. (equations%without_patches .or. any(outcome%history%inner > 0))
+      if (equations%solves(equations%now)%own(displacement_field)) call strengthen_drag(.not. outcome%converged, equations)
       if (outcome%converged .and. report%passed < 1) then
         outcome%converged = .false.
         outcome%reason = 'a side goes through a die'

@@ -165,8 +165,7 @@ contains
       call proportion(equations%dofs, solution%fields, share, du)
       if (.not. abs(share - known%ratio) > 0) du = du + bend
       where (known%back) du = -onset*du
-      call leave_at_rest(scene, equations%dofs, equations%loose, solution, solution%time + dt, du, &
-                         equations%resting)
+      call leave_at_rest(scene, equations, solution, solution%time + dt, du)
       call leave_dies_at_rest(scene, equations%dofs, solution, external, du)
       if (.not. known%goes_on) call seat_dies(scene, equations%dofs, solution, external, equations%size, du)
       if (present(given)) du = merge(given, du, known%fixed)
