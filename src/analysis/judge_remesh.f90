@@ -106,7 +106,12 @@ contains
     real(wp) :: limit
 
     limit = accept%first_residual
-    if (.not. accept%residual_is_given) limit = max(limit, min(balance%old_error, balance%open_share))
+    if (accept%residual_is_given) return
+    if (balance%open_share > 1) then
+      limit = max(limit, 1.0_wp)
+    else
+      limit = max(limit, min(balance%old_error, balance%open_share))
+    end if
   end function residual_limit
 
   !> The same of the elastic energy, which goes with the square of the force where few nodes bear that.

@@ -38,6 +38,8 @@ module remeshing
     real(wp) :: bad_share = 0.0_wp
     !> Error of the stress, and depth of a side or a corner over what is allowed.
     real(wp) :: stress_error = never, contact = never
+    !> Sides of a contact that is narrow beside them over those of a new mesh.
+    real(wp) :: narrow = never
     !> Strain of the most strained element since the mesh began from which on the error counts.
     real(wp) :: error_strain = 0.0_wp
     !> Cutbacks of a step one after the other.
@@ -72,6 +74,8 @@ module remeshing
     !> Error of the stress that a new mesh has shown first: when it began, then when its flow has forgotten the stresses carried to
     !> it, which the transfer has smoothed; 0 for the deck's own mesh.
     real(wp) :: first_stress = 0.0_wp
+    !> Sides of a narrow contact over those that were wanted, with which a new mesh began; 0 without.
+    real(wp) :: first_narrow = 0.0_wp
     !> Error of the stress with which the mesh before left it, those of older meshes in it (0 for the deck's own mesh), and the
     !> share of that which is still there: flow forgets it, elastic parts keep it.
     real(wp) :: carried_stress = 0.0_wp, stress_left = 1.0_wp
@@ -86,7 +90,8 @@ contains
     type(remesh_rules_t), intent(in) :: rules
     logical :: yes
 
-    yes = any(abs(rules%shape) < never) .or. rules%stress_error < never .or. rules%contact < never .or. rules%distress < huge(0)
+    yes = any(abs(rules%shape) < never) .or. rules%stress_error < never .or. rules%contact < never .or. rules%narrow < never &
+          .or. rules%distress < huge(0)
     if (allocated(rules%times)) yes = yes .or. size(rules%times) > 0
     if (allocated(rules%strokes)) yes = yes .or. size(rules%strokes) > 0
   end function has_limit
