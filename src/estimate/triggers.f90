@@ -16,7 +16,7 @@ module triggers
   use kinds, only: eps, wp
   use mesh_quality, only: element_shape, is_bad, shape_places, shape_places_t
   use narrow_contacts, only: measure_narrow, narrow_t
-  use remeshing, only: criterion_names, ncriteria, never, of_distress, scaled_jacobian, stroke_t, trigger_t
+  use remeshing, only: criterion_names, ncriteria, never, of_distress, of_narrow, scaled_jacobian, stroke_t, trigger_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use web_thickness, only: measure_web, web_t
@@ -255,7 +255,7 @@ contains
     limit = scene%remesh%narrow*max(1.0_wp, solution%estimate%first_narrow)
     narrow = measure_narrow(scene, solution)
     if (narrow%ratio > limit .and. narrow%error > scene%remesh%stress_error) &
-      call add(found, 'narrow_contact', narrow%ratio, limit, narrow%group, narrow%side)
+      call add(found, of_narrow, narrow%ratio, limit, narrow%group, narrow%side)
   end subroutine find_narrow
 
   pure subroutine add(found, name, value, limit, group, element)
