@@ -19,9 +19,10 @@ module mesh_without_zones
   public :: make_mesh_without_zones
 
   !> Other sizes give another mesh, when one is of bad shape, has triangles or the mesher fails: factors of refinement; elements
-  !> of twice the size that are split are quadrilaterals in any case.
-  real(wp), parameter :: finer_by(7) = [1.0_wp, 1.05_wp, 1.0_wp, 1.12_wp, 1.12_wp, 1.25_wp, 2.0_wp]
-  logical, parameter :: split(7) = [.false., .false., .true., .false., .true., .true., .true.]
+  !> of twice the size that are split are quadrilaterals in any case. The last ones are for corners of a material that run out to
+  !> layers thinner than the sizes: how many elements are across them, and where rows of elements end, changes with the size.
+  real(wp), parameter :: finer_by(10) = [1.0_wp, 1.05_wp, 1.0_wp, 1.12_wp, 1.12_wp, 1.25_wp, 2.0_wp, 1.4_wp, 0.85_wp, 1.6_wp]
+  logical, parameter :: split(10) = [.false., .false., .true., .false., .true., .true., .true., .false., .false., .false.]
   !> Where the number of elements is limited other sizes are larger ones, by these factors at most.
   real(wp), parameter :: coarser_by = 1.25_wp
   !> Sizes for a limited number of elements are larger by this than by the number that the sizes need.

@@ -99,14 +99,19 @@ contains
   end function error_limit
 
   !> Limit of the first residual: about as large as the error of the stress on the old mesh in any case, where few nodes bear the
-  !> load, and where the stress of the body is that around them.
+  !> load, and where the stress of the body is that around them; all of it where they leave open as much as the force.
   pure function residual_limit(accept, balance) result(limit)
     type(acceptance_t), intent(in) :: accept
     type(balance_t), intent(in) :: balance
     real(wp) :: limit
 
     limit = accept%first_residual
-    if (.not. accept%residual_is_given) limit = max(limit, min(balance%old_error, balance%open_share))
+    if (accept%residual_is_given) return
+    if (balance%open_share >= 1) then
+      limit = max(limit, 1.0_wp)
+    else
+      limit = max(limit, min(balance%old_error, balance%open_share))
+    end if
   end function residual_limit
 
   !> The same of the elastic energy, which goes with the square of the force where few nodes bear that.

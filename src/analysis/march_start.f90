@@ -24,7 +24,7 @@ module march_start
   use sudden_loads, only: sudden_load_words
   use system, only: join_path
   use text, only: to_text, two_digits
-  use watch_mesh, only: ask_for_trims, estimate_stress, mesh_is_due
+  use watch_mesh, only: ask_for_trims, estimate_stress, mesh_is_due, note_first_narrow
   implicit none
   private
   public :: start_march
@@ -137,6 +137,7 @@ contains
     if (.not. run%mesh_refused) call begin_probation(solution%probation)
     if (run%balance%restored) call estimate_stress(scene, run%estimator, solution)
     solution%estimate%first_stress = solution%estimate%stress
+    if (run%balance%restored) call note_first_narrow(scene, solution)
     call write_restart(run%stem//'.g'//two_digits(scene%generation)//'.restart.json', scene, solution, run%balance, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
   end subroutine balance_new_mesh

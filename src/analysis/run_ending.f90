@@ -17,6 +17,7 @@ module run_ending
   use judge_remesh, only: taken_up_words
   use kinds, only: wp
   use listing, only: close_listing, end_progress, list_lines
+  use narrow_loads, only: narrow_words
   use passed_planes, only: warn_of_passed_planes
   use run_facts, only: run_facts_t
   use run_options, only: run_options_t
@@ -87,6 +88,8 @@ contains
       if (len(words) > 0) call add_text(warnings, words)
     end if
     call warn_of_confinement(scene, solution, warnings)
+    words = narrow_words(scene, solution)
+    if (len(words) > 0) call add_text(warnings, words)
     call warn_of_passed_planes(scene, solution, warnings)
     if (solution%unstable_steps > 0) call add_text(warnings, 'equilibria are not stable in '//to_text(solution%unstable_steps) &
       //' of '//to_text(solution%step)//' steps, first at time '//to_text(solution%unstable_from, 6)//': a perfect part stays ' &

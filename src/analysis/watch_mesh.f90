@@ -3,7 +3,9 @@ module watch_mesh
   use estimator, only: estimate_errors, estimator_t
   use fields, only: displacement_field
   use listing, only: list_lines, listing_t
-  use remeshing, only: trigger_t, trigger_words
+  use narrow_contacts, only: measure_narrow, narrow_t
+  use narrow_loads, only: note_narrow
+  use remeshing, only: never, trigger_t, trigger_words
   use scene, only: scene_t
   use solution, only: solution_t
   use text, only: string_t, to_text
@@ -11,7 +13,7 @@ module watch_mesh
   use triggers, only: distress_trigger, find_triggers, find_trims, was_good
   implicit none
   private
-  public :: estimate, estimate_stress, look_at_mesh, ask_for_trims, answer_distress, mesh_is_due, remesh_reason
+  public :: estimate, estimate_stress, note_first_narrow, look_at_mesh, ask_for_trims, answer_distress, mesh_is_due, remesh_reason
 
 contains
 
@@ -27,6 +29,7 @@ contains
     call timers%add('error estimates', timer)
     call timers%start(timer)
     call estimate_errors(estimator, scene, solution)
+    call note_narrow(scene, solution)
     call timers%stop(timer)
   end subroutine estimate
 
@@ -43,6 +46,17 @@ contains
     solution%estimate%stress = tried%estimate%stress
     solution%estimate%stress_of = tried%estimate%stress_of
   end subroutine estimate_stress
+
+  !> How narrow contact is beside the sides of a new mesh that has been made for it.
+  subroutine note_first_narrow(scene, solution)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(inout) :: solution
+    type(narrow_t) :: narrow
+
+    if (.not. scene%remesh%narrow < never) return
+    narrow = measure_narrow(scene, solution)
+    solution%estimate%first_narrow = narrow%ratio
+  end subroutine note_first_narrow
 
   !> Errors are estimated of stresses and strains: where bodies move.
   pure function has_estimate(scene)

@@ -8,7 +8,7 @@ module cards_remesh
   use fields, only: displacement_field
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, scaled_jacobian, stroke_t
-  use remesh_defaults, only: set_default_limits, set_default_sizes
+  use remesh_defaults, only: default_narrow => narrow, set_default_limits, set_default_sizes
   use remesher_options, only: has_contours
   use remesher_rows, only: complete_options, make_sizes_finer, read_remesher_row, remesher_words
   use remesher_windows, only: read_window
@@ -20,7 +20,7 @@ module cards_remesh
   public :: read_remesh
 
   !> Rows of REMSH with limits for a new mesh, one word each, and all rows.
-  character(len=*), parameter :: limit_rows = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT CONTACT DISTRESS TIMES STROKE'
+  character(len=*), parameter :: limit_rows = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT CONTACT NARROW DISTRESS TIMES STROKE'
   character(len=*), parameter :: rows = limit_rows//' BAD LEAST WINDOW '//remesher_words
   !> The middle third of a side.
   real(wp), parameter :: middle_third = 1.0_wp/3.0_wp
@@ -150,6 +150,11 @@ contains
         rules%contact = 1
         if (cursor%more()) call cursor%real('the largest depth between points over the allowed penetration', rules%contact, &
                                             lower=0.0_wp, strict_lower=.true.)
+        if (size(draft%scene%dies) == 0) call cursor%fail('the deck has no die')
+      case ('NARROW')
+        rules%narrow = default_narrow
+        if (cursor%more()) call cursor%real('the sides of a narrow contact over those of a new mesh', rules%narrow, lower=1.0_wp, &
+                                            strict_lower=.true.)
         if (size(draft%scene%dies) == 0) call cursor%fail('the deck has no die')
       case ('DISTRESS')
         call cursor%integer('the cutbacks of a step one after the other', rules%distress, lower=1)

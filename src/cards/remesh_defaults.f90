@@ -8,7 +8,7 @@ module remesh_defaults
   use vectors, only: length_of
   implicit none
   private
-  public :: elements_at_first, area_in, set_default_limits, set_default_sizes
+  public :: elements_at_first, area_in, narrow, set_default_limits, set_default_sizes
 
   !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
   !> (angles from 20 degrees, scaled Jacobians from 0.25, middle nodes in the middle third), and each is some steps of distortion
@@ -20,6 +20,9 @@ module remesh_defaults
   !> Error of the stress, and the strain of an element since its mesh began from which on it counts: on meshes that are worn so far
   !> the force is too high, and drops on the next one (remdata/README.md). New meshes begin with about half of this error.
   real(wp), parameter :: stress_error = 0.05_wp, error_strain = 0.4_wp
+  !> Sides of a narrow contact over those of a new mesh: below that contact is known to within a node or two on the one as on the
+  !> other.
+  real(wp), parameter :: narrow = 1.5_wp
   !> Cutbacks in a row; steps between two meshes.
   integer, parameter :: cutbacks = 4, steps = 5
 
@@ -46,6 +49,7 @@ contains
     if (.not. has_steps) rules%least_steps = steps
     rules%distress = cutbacks
     if (has_dies) rules%contact = depth
+    if (has_dies) rules%narrow = narrow
   end subroutine set_default_limits
 
   !> Sizes and number of elements of bodies that are given by their contours: squares, so many in all and across the most slender

@@ -38,6 +38,8 @@ contains
       end do
       if (rules%contact < never) &
         call add_limit(lines, 'contact', 'deeper by '//to_text(rules%contact)//' times the allowed penetration')
+      if (rules%narrow < never) call add_limit(lines, 'narrow_contact', 'sides where a die is borne by few nodes longer by '// &
+                                               to_text(rules%narrow)//' than new ones')
       if (rules%distress < huge(0)) call add_limit(lines, 'distress', to_text(rules%distress)//' cutbacks in a row')
     end associate
   end subroutine add_shape_limits

@@ -15,7 +15,7 @@ module bearing_nodes
   use vectors, only: length_of
   implicit none
   private
-  public :: count_nodes, error_of_width, open_share
+  public :: bears_load, count_nodes, error_of_width, open_share
 
   !> A die bears the load that has at least this share of the largest force on any.
   real(wp), parameter :: main_force = 0.5_wp
@@ -30,18 +30,30 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     real(wp) :: share
-    real(wp) :: force(size(scene%dies))
+    logical :: bears(size(scene%dies))
     integer :: nodes(size(scene%dies)), d
 
     share = 0
     if (size(nodes) == 0 .or. .not. scene%fields(displacement_field)%declared) return
     nodes = count_nodes(scene, solution)
-    force = [(length_of(solution%fields(pilot_field)%applied(1:2, d)), d=1, size(nodes))]
+    bears = bears_load(scene, solution)
     do d = 1, size(nodes)
-      if (nodes(d) < 1 .or. nodes(d) > few .or. force(d) < main_force*maxval(force)) cycle
+      if (nodes(d) < 1 .or. nodes(d) > few .or. .not. bears(d)) cycle
       share = max(share, error_of_width(nodes(d), scene%plane_state))
     end do
   end function open_share
+
+  !> Dies with at least half of the largest force on any.
+  pure function bears_load(scene, solution) result(bears)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical :: bears(size(scene%dies))
+    real(wp) :: force(size(scene%dies))
+    integer :: d
+
+    force = [(length_of(solution%fields(pilot_field)%applied(1:2, d)), d=1, size(force))]
+    bears = force >= main_force*maxval(force) .and. force > 0
+  end function bears_load
 
   !> Nodes, and points within sides, by which each rigid die is pressed; none on dies made of sides.
   pure function count_nodes(scene, solution) result(number)

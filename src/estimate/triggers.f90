@@ -15,7 +15,8 @@ module triggers
   use fields, only: displacement_field, pilot_field
   use kinds, only: eps, wp
   use mesh_quality, only: element_shape, is_bad, shape_places, shape_places_t
-  use remeshing, only: criterion_names, ncriteria, never, of_distress, scaled_jacobian, stroke_t, trigger_t
+  use narrow_contacts, only: measure_narrow, narrow_t
+  use remeshing, only: criterion_names, ncriteria, never, of_distress, of_narrow, scaled_jacobian, stroke_t, trigger_t
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use web_thickness, only: measure_web, web_t
@@ -46,6 +47,7 @@ contains
       allocate (others(0))
       if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, others)
       if (scene%remesh%contact < never) call find_misfits(scene, solution, others)
+      call find_narrow(scene, solution, others)
       limit = max(scene%remesh%stress_error, worse*solution%estimate%first_stress)
       ! where the mesh is due anyhow its error is a reason from the first strain on
       if (solution%estimate%stress > limit) then
@@ -240,6 +242,21 @@ contains
         call add(found, 'contact_corner', misfit%corner, scene%remesh%contact, g, misfit%corner_side)
     end do
   end subroutine find_misfits
+
+  !> A die whose contact is narrow beside the sides there, and was not so, or less, when the mesh began.
+  pure subroutine find_narrow(scene, solution, found)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(trigger_t), allocatable, intent(inout) :: found(:)
+    type(narrow_t) :: narrow
+    real(wp) :: limit
+
+    if (.not. scene%remesh%narrow < never) return
+    limit = scene%remesh%narrow*max(1.0_wp, solution%estimate%first_narrow)
+    narrow = measure_narrow(scene, solution)
+    if (narrow%ratio > limit .and. narrow%error > scene%remesh%stress_error) &
+      call add(found, of_narrow, narrow%ratio, limit, narrow%group, narrow%side)
+  end subroutine find_narrow
 
   pure subroutine add(found, name, value, limit, group, element)
     type(trigger_t), allocatable, intent(inout) :: found(:)

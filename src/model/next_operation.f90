@@ -82,6 +82,7 @@ contains
     after%sunk_share = 0
     after%largest_force = 0
     after%confinement = fresh%confinement
+    after%narrow = fresh%narrow
     after%damping = 0
     after%damping_bound = after%work%damping
     after%friction_apart = 0
@@ -97,6 +98,7 @@ contains
     after%estimate%carried_stress = before%estimate%carried_stress*before%estimate%stress_left
     after%estimate%began = before%estimate%began
     after%estimate%first_stress = before%estimate%first_stress
+    after%estimate%first_narrow = before%estimate%first_narrow
     after%cuts = fresh%cuts
     after%estimate%last_stop = before%step
     after%fields = fresh%fields

@@ -6,12 +6,14 @@ module remeshing
   implicit none
   private
   public :: carry_error, remesh_rules_t, stroke_t, stress_error_of_all, trigger_t, estimate_t
-  public :: drop_triggers, has_limit, of_distress, trigger_words
+  public :: drop_triggers, has_limit, of_distress, of_narrow, trigger_words
   public :: ncriteria, criterion_names, is_upper, never
   public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
 
   !> Why a new mesh is due: cutbacks one after the other, or a step that can be cut back no more.
   character(len=*), parameter :: of_distress = 'distress'
+  !> Why: few sides bear a die.
+  character(len=*), parameter :: of_narrow = 'narrow_contact'
 
   !> Criteria of the shape of an element, by position in the lists below (mesh_quality measures them).
   integer, parameter :: least_angle = 1, largest_angle = 2, middle_share = 3, jacobian_ratio = 4, scaled_jacobian = 5, &
@@ -38,6 +40,8 @@ module remeshing
     real(wp) :: bad_share = 0.0_wp
     !> Error of the stress, and depth of a side or a corner over what is allowed.
     real(wp) :: stress_error = never, contact = never
+    !> Sides of a contact that is narrow beside them over those of a new mesh.
+    real(wp) :: narrow = never
     !> Strain of the most strained element since the mesh began from which on the error counts.
     real(wp) :: error_strain = 0.0_wp
     !> Cutbacks of a step one after the other.
@@ -72,6 +76,8 @@ module remeshing
     !> Error of the stress that a new mesh has shown first: when it began, then when its flow has forgotten the stresses carried to
     !> it, which the transfer has smoothed; 0 for the deck's own mesh.
     real(wp) :: first_stress = 0.0_wp
+    !> Sides of a narrow contact over those that were wanted, with which a new mesh began or the old one went on; 0 without.
+    real(wp) :: first_narrow = 0.0_wp
     !> Error of the stress with which the mesh before left it, those of older meshes in it (0 for the deck's own mesh), and the
     !> share of that which is still there: flow forgets it, elastic parts keep it.
     real(wp) :: carried_stress = 0.0_wp, stress_left = 1.0_wp
@@ -86,7 +92,8 @@ contains
     type(remesh_rules_t), intent(in) :: rules
     logical :: yes
 
-    yes = any(abs(rules%shape) < never) .or. rules%stress_error < never .or. rules%contact < never .or. rules%distress < huge(0)
+    yes = any(abs(rules%shape) < never) .or. rules%stress_error < never .or. rules%contact < never .or. rules%narrow < never &
+          .or. rules%distress < huge(0)
     if (allocated(rules%times)) yes = yes .or. size(rules%times) > 0
     if (allocated(rules%strokes)) yes = yes .or. size(rules%strokes) > 0
   end function has_limit
@@ -124,10 +131,15 @@ contains
     end if
   end function trigger_words
 
-  !> No new mesh is due any more.
+  !> No new mesh is due any more: the present one goes on. Contact that is narrow on it wears it no further, and asks again only
+  !> where it becomes narrower.
   pure subroutine drop_triggers(estimate)
     type(estimate_t), intent(inout) :: estimate
+    integer :: k
 
+    do k = 1, size(estimate%triggers)
+      if (estimate%triggers(k)%name == of_narrow) estimate%first_narrow = max(estimate%first_narrow, estimate%triggers(k)%value)
+    end do
     deallocate (estimate%triggers)
     allocate (estimate%triggers(0))
   end subroutine drop_triggers

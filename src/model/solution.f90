@@ -7,6 +7,7 @@ module solution
   use heat_record, only: heat_record_t
   use kinds, only: wp
   use loads, only: multiplier_at, start_t
+  use narrow_record, only: narrow_record_t
   use pairs, only: pairs_t, start_pairs
   use path_record, only: path_record_t, start_path
   use remesher_options, only: number_of_cuts
@@ -97,6 +98,8 @@ module solution
     real(wp) :: held_growth = 0.0_wp
     !> Parts without room to flow.
     type(confinement_record_t) :: confinement
+    !> Dies that few sides of elements have borne.
+    type(narrow_record_t) :: narrow
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Largest force on a die so far where meshes are replaced, or on one made of sides; per radian when axisymmetric.

@@ -4,6 +4,7 @@ module visit_solution
   use confinement_record, only: confinement_record_t
   use heat_record, only: heat_record_t
   use kinds, only: wp
+  use narrow_record, only: narrow_record_t
   use pairs, only: pairs_t
   use path_record, only: path_record_t
   use solution, only: group_state_t, solution_t
@@ -75,6 +76,9 @@ contains
     call visitor%enter('confinement')
     call visit_confinement(visitor, self%confinement)
     call visitor%leave('confinement')
+    call visitor%enter('narrow')
+    call visit_narrow(visitor, self%narrow)
+    call visitor%leave('narrow')
     call visitor%enter('path')
     call visit_path_record(visitor, self%path)
     call visitor%leave('path')
@@ -133,6 +137,17 @@ contains
     call visitor%member('over_stress', self%over_stress, kept, '-')
     call visitor%member('now', self%now, kept)
   end subroutine visit_confinement
+
+  subroutine visit_narrow(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(narrow_record_t), intent(inout) :: self
+
+    call visitor%member('die', self%die, kept, low=0)
+    call visitor%member('force', self%force, kept, 'force', low=0.0_wp)
+    call visitor%member('until', self%until, kept, 'time', low=0.0_wp)
+    call visitor%member('across', self%across, kept, '-', low=0.0_wp)
+    call visitor%member('error', self%error, kept, '-', low=0.0_wp)
+  end subroutine visit_narrow
 
   subroutine visit_path_record(visitor, self)
     class(visitor_t), intent(inout) :: visitor

@@ -3,7 +3,7 @@
 
 usage: run_neighbours.py [--seed S] [--number N] [--first K] [--scene NAME] [-v] [-k]     default: seed 1, the first 6 of them, of scenes in turn, and those of HARD
 
-Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. At most one try at a new mesh in twenty is refused. Prints a table, and one of the changes of the die force at new meshes (force_changes.py).
+Neighbour K of a seed is the same whatever N is. Ends with 0 or 3, where 3 comes with a reason; at least 57 of 60 with 0. At most one try at a new mesh in twenty is refused, in each of HARD one in six. Prints a table, and one of the changes of the die force at new meshes (force_changes.py).
 """
 import os
 import random
@@ -16,9 +16,11 @@ from scenes import HEAD, SCENES, badly_shaped, force_table, line, run_scene  # n
 from support import DONE, NO_CONVERGENCE, Checks  # noqa: E402
 
 FAILED, REFUSED = 3 / 60, 1 / 20
+REFUSED_IN_HARD = 1 / 6
 # Seed and number of neighbours that were hard. The first did not end: a strip that hardly rubs on its tool (.002) slid to and fro from one iteration to the next. Of the second, a hard core in
-# a soft shell that is pressed out between it and the die, 20 of 39 new meshes were refused: in the sharp corner of the shell no element is better than the corner.
-HARD = ((33, 33), (38, 12))
+# a soft shell that is pressed out between it and the die, 20 of 39 new meshes were refused: in the sharp corner of the shell no element is better than the corner. Of the third, another such
+# clad billet, 3 of 10: the shell runs out to a layer thinner than its elements, of which no size that was tried made a good mesh.
+HARD = ((33, 33, ""), (38, 12, ""), (51, 21, "bimetal"))
 # Quick scenes come first in the draw, so that the first ones are a test.
 ORDER = ("bimetal", "side_pressing", "can", "teeth", "two_strokes", "h_section", "indentation", "piercing", "ring_70", "springback",
          "extrusion_long", "heading")
@@ -41,10 +43,10 @@ def main():
     scene = value_of("--scene", "")
     failed, refused, meshes, outs = 0, 0, 0, []
     print("\n".join(HEAD))
-    neighbours = [(seed, k) for k in range(first, first + number)]
+    neighbours = [(seed, k, scene) for k in range(first, first + number)]
     if not {"--seed", "--number", "--first", "--scene"} & set(sys.argv):
         neighbours += HARD
-    for seed, k in neighbours:
+    for seed, k, scene in neighbours:
         name, parameters = draw(seed, k, scene)
         try:
             found = run_scene(name, checks.path(f"{seed}.{k}"), parameters)
@@ -55,6 +57,8 @@ def main():
         failed += found["code"] != DONE
         refused, meshes = refused + found["refused"], meshes + found["meshes"]
         outs.append(found["out"])
+        if (seed, k, scene) in HARD:
+            checks.that(found["refused"] <= REFUSED_IN_HARD * (found["refused"] + found["meshes"]), f"{name} {seed}/{k}: tries refused", found["refused"])
         checks.that(not badly_shaped(found), f"{name} {seed}/{k}: shape of the meshes", badly_shaped(found))
         said = ", ".join(f"{key} {value:g}" for key, value in parameters.items())
         reason = found["said"].splitlines()[0] if found["code"] != DONE and found["said"] else ""
