@@ -192,6 +192,7 @@ contains
     type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     type(string_t), allocatable :: more(:)
     character(len=:), allocatable :: words
+    logical :: without_heat
 
     allocate (lines(0))
     call put('  accuracy (estimates)                                    half of it costs')
@@ -205,11 +206,13 @@ contains
       if (closing%meshes > 1) call row('', on_all_meshes(), to_text(sum(closing%seconds), 3)//' s of processor in all, ' &
         //to_text(closing%seconds(remesher_task), 3)//' s of the remesher')
     end if
+    without_heat = closing%warm .and. closing%heat_steps == 0
     if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
     if (closing%path) &
       call row('in time', 'path: motion '//percent(closing%motion)//', stress' &
                //trim(merge('          ', ' at least ', closing%whole_known))//' '//percent(closing%path_stress) &
-               //trim(merge('                 ', ' (at this motion)', closing%whole_known)), &
+               //trim(merge('                 ', ' (at this motion)', closing%whole_known)) &
+               //trim(merge(' (without that of temperatures)', '                               ', without_heat)), &
                times(closing%path_cost)//' the time: half the steps'' length')
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (THETA)', '')
     if (closing%heat_steps > 0) &
@@ -308,6 +311,7 @@ contains
       call json%add('stress_pct', 100*closing%path_stress)
       call json%add('stress_at_motion_pct', 100*closing%stress_at_motion)
       if (.not. closing%whole_known) call json%add('stress_known', .false.)
+      if (closing%warm .and. closing%heat_steps == 0) call json%add('stress_without_heat', .true.)
       call json%add('half_costs', closing%path_cost)
       call json%end_object()
     end if

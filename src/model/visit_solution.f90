@@ -113,6 +113,7 @@ contains
     call visitor%member('estimated', self%estimated, kept, low=0)
     call visitor%member('content_error', self%content_error, of_the_mesh, 'node', 'energy')
     call visitor%member('die_error', self%die_error, of_the_mesh, 'die', 'energy')
+    call visitor%member('temperature_error', self%temperature_error, of_the_mesh, 'node', 'temperature')
     call visitor%member('error_of_mesh', self%error_of_mesh, of_the_mesh, 'temperature', low=0.0_wp)
     call visitor%member('error_now', self%error_now, kept, 'temperature', low=0.0_wp)
     call visitor%member('error_largest', self%error_largest, kept, 'temperature', low=0.0_wp)

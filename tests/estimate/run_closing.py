@@ -240,6 +240,16 @@ class Closing(unittest.TestCase):
             self.assertGreater(one[place][name], 0)
             self.assertAlmostEqual(other[place][name]/one[place][name], 1, delta=1e-6, msg=name)
 
+    def test_stress_without_that_of_temperatures(self):
+        """A scheme whose errors in time are not estimated: the stress is told without them, and that it is."""
+        heat = "LAW    warm HEAT\n   50. 3.6\n"
+        beam = REST.replace("FIXED ", heat + "ADDEL  part PL8TM warm\nFIXED ", 1)
+        for scheme in ("", "THETA  0.5\n"):
+            told, listing, page = self.what_is_told("scheme", beam.replace("STRAT ", scheme + "STRAT "))
+            self.assertEqual(bool(scheme), "stress_without_heat" in told["path"])
+            for text in (listing, page):
+                self.assertEqual(bool(scheme), "(without that of temperatures)" in text)
+
     def test_stress_of_the_path_in_part(self):
         """A strip that necks in steps of a quarter: the error was as large as the stress, and what is left is told as a part."""
         told, listing, page = self.what_is_told("necks", NECKS)

@@ -10,6 +10,7 @@ and by default. `estimated`: the same and an upset billet with steps of one leng
 over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
 `carried`: the error of the stress that the closing table tells, over the difference to a run with steps of 1/16, where a load rises, rests,
 goes on more slowly, turns and lets go: tubes under pressure, bent beams, a cantilever with a moved end, plastic and in creep; a cylinder that cools, its temperatures known.
+`heated`: the same of cylinders whose temperatures, and phases, are found by implicit Euler: their errors are in that of the stress.
 `tight`: bounds of 1/16 and 1/64. `free`: elastic and uniform plastic bars take the steps they take without bounds, elastic ones on any way. Long steps that a deck allows end with a warning.
 """
 import csv
@@ -161,6 +162,35 @@ STEEL = os.path.join(SOURCE, "decks", "residual_stress", "hot.met")
 HEAT = f"META\n   STEEL {STEEL} stable\n   ENERGY 1.\nSTART  T 800.\nCONVE  part 2 3 H 5. TS 20.\nSAVE   1"
 HOT = f"ARBTHMET\n   STEEL {STEEL} stable\n   STRESS 1.   TIME 1.\nTEMPE  part FROM heat/heat.g01.h5\nFIXED  part 1 Y\nFIXED  part 4 X"
 
+# A cylinder whose heat is found with the stress: file and steel, law for the mechanics, exchange, and the end.
+HARDENING = os.path.join(SOURCE, "decks", "quench_bar_trip", "hardening.met")
+QUENCHED = """TITLE  A cylinder that is quenched
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  part PL8LS 4 m
+   0. 0.   15. 0.   15. 24.   0. 24.
+   6 0.4   4 2.
+LAW    m ARBTHMET
+   STEEL {steel}
+   STRESS 1.   {own}
+ADDEL  part PL8TM heat BILINEAR
+LAW    heat META
+   STEEL {steel}
+   ENERGY 1.
+START  T 850.
+FIXED  part 1 Y
+FIXED  part 4 X
+CONVE  part 2 3 H {exchange} TS 20.
+STRAT  0.02 1.E-5 {step}   40 3
+STOP   {end}
+{more}END
+"""
+QUENCHES = {
+    "no phases": ({"steel": f"{STEEL} stable", "own": "TIME 1.", "exchange": 3., "end": 12.}, 0.5),
+    "phases of the heat": ({"steel": f"{HARDENING} hardening", "own": "", "exchange": 1., "end": 24.}, 1.0),
+    "phases of its own": ({"steel": f"{HARDENING} hardening", "own": "TIME 1.", "exchange": 1., "end": 24.}, 1.0),
+}
+
 # Another side goes to and fro meanwhile.
 BENT = """LIC    aside
    0. 0.   0.7 0.   1.3 1.   2. -1.
@@ -296,6 +326,26 @@ def carried(checks):
             checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
 
 
+def heated(checks):
+    """Errors of the stress at the end, with those of temperatures and phases, against those of short steps of TR-BDF2."""
+    print(f"\n{'heated':22s} {'steps':>6s} {'error %':>9s} {'told %':>9s} {'effectivity':>11s}")
+    for name, (words, step) in QUENCHES.items():
+        fine = Run(checks, "heated-fine", QUENCHED.format(step=step/16, more="THETA  TRBDF2\n" + OFF, **words))
+        if not fine.ok:
+            continue
+        truth = fine.state("part", *STRESS)
+        for length, more in ((step, WIDE), (step/4, WIDE), (step, "")):
+            run = Run(checks, "heated", QUENCHED.format(step=length, more=more, **words))
+            if not run.ok:
+                continue
+            with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+                whole = json.load(file)
+            told, true = whole["accuracy"]["path"], 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
+            ratio = told["stress_pct"]/true
+            print(f"{name:22s} {whole['steps']:6d} {true:9.4f} {told['stress_pct']:9.4f} {ratio:11.2f}")
+            checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
+
+
 def tight(checks):
     """Bounds of 1/16 and 1/64 of the default: they are kept, at four times the steps, and few attempts are made in vain."""
     print(f"\n{'tight':22s} {'bound':>9s} {'steps':>6s} {'in vain':>8s} {'told':>9s} {'error':>9s}")
@@ -394,6 +444,7 @@ def main():
         bounded(checks)
         estimated(checks)
         carried(checks)
+        heated(checks)
         tight(checks)
         free(checks)
         warned(checks)

@@ -31,6 +31,8 @@ def accuracy_section(run: Run) -> Sections:
         if entry.get("stress_known") is False and name in UNKNOWN:
             words = {**words, "stress_pct": UNKNOWN[name]}
         found = ", ".join(text.format(brief(number(entry[key]), 3)) for key, text in words.items() if key in entry)
+        if entry.get("stress_without_heat") is True:
+            found += " (without that of temperatures)"
         cost = f"about {brief(number(entry['half_costs']), 2)} times the time ({HOW[name]})" if "half_costs" in entry else "\N{EN DASH}"
         rows.append(("", (escape(where), escape(found), escape(cost))))
     asked = given.get("asked")
