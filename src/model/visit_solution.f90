@@ -148,6 +148,7 @@ contains
     call visitor%member('stress', self%stress, kept, 'energy^0.5', low=0.0_wp)
     call visitor%member('stress_whole', self%stress_whole, kept, 'energy^0.5', low=0.0_wp)
     call visitor%member('whole_before', self%whole_before, recomputed, 'energy^0.5', low=0.0_wp)
+    call visitor%member('flow', self%flow, kept, 'energy^0.5', low=0.0_wp)
     call visitor%member('unknown', self%unknown, kept, '-', low=0.0_wp, high=1.0_wp)
     call visitor%member('estimated', self%estimated, kept, low=0)
     call visitor%member('shortened', self%shortened, kept, low=0)

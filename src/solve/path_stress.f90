@@ -25,7 +25,7 @@ module path_stress
   use kinds, only: wp
   use kinematics_api, only: first_history
   use path_heat, only: follow_heat, warmth_t
-  use path_record, only: error_weight, path_record_t, path_step_t, state_error_t, stress_scale
+  use path_record, only: error_weight, largest_linear, path_record_t, path_step_t, state_error_t, stress_scale
   use path_states, only: advance_beside, begin_beside, of_unknowns, on_nodes, root_energy, unbalanced_forces
   use scene, only: plane_stress, scene_t
   use solution, only: group_state_t, solution_t
@@ -99,7 +99,8 @@ contains
     outcome%path%states = sum_of(difference(other%groups, solution%groups, active, 1/small), weight, added)
     call add_phases(warmth, outcome%path%states)
     outcome%path%stress_whole = size_of(outcome%path%states)
-    outcome%path%known = outcome%path%stress_whole <= stress_scale(solution%path, outcome%path%stress)
+    outcome%path%known = outcome%path%stress_whole &
+                         <= largest_linear(stress_scale(solution%path, outcome%path%stress), outcome%path%flow)
     if (outcome%path%known) then
       outcome%path%error = solution%path%error + on_nodes(equations, share*answer + (1 - left)*before*own)
     else

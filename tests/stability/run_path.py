@@ -191,6 +191,31 @@ QUENCHES = {
     "phases of its own": ({"steel": f"{HARDENING} hardening", "own": "TIME 1.", "exchange": 1., "end": 24.}, 1.0),
 }
 
+# A sheet, free: it has no stress, through martensite and its plasticity too.
+DILATOMETER = f"""TITLE  A sheet that cools evenly
+STATE  PLSTS
+KINEM  SMALL
+BLOCK  part PL8LS 4 m
+   0. 0.   5. 0.   5. 10.   0. 10.
+   1 1.   1 1.
+LAW    m ARBTHMET
+   STEEL {HARDENING} hardening
+   STRESS 1.   {{own}}
+ADDEL  part PL8TM heat BILINEAR
+LAW    heat META
+   STEEL {HARDENING} hardening
+   ENERGY 1.
+START  T 850.
+IMPOS  part 1 2 3 4 T cool
+LIC    cool
+   0. 850.   100. 20.
+FIXED  part 1 Y
+FIXED  part 4 X
+PROBE  length NODE UY 0. 10.
+STRAT  0.1 1.E-6 2.   40 3
+{{more}}END
+"""
+
 # Another side goes to and fro meanwhile.
 BENT = """LIC    aside
    0. 0.   0.7 0.   1.3 1.   2. -1.
@@ -378,6 +403,15 @@ def free(checks):
                 checks.that(steps[1] <= 1.15*steps[0], f"{name}: steps", steps)
                 checks.that(runs[0].history["force"][-1] == runs[1].history["force"][-1] or steps[0] != steps[1],
                             f"{name}: the same bits in the same steps")
+    for own in ("", "TIME 1."):
+        off, run = (Run(checks, "dilatometer", DILATOMETER.format(own=own, more=more)) for more in (OFF, ""))
+        if off.ok and run.ok:
+            steps = [len(one.history["step"]) for one in (off, run)]
+            checks.that(steps[1] <= 3*steps[0], f"a sheet without stress, {own}: steps", steps)
+            martensite = 1 - np.exp(-0.015*280)
+            checks.small(run.history["length"][-1]/10 - (martensite*0.0105 - 22e-6*830), 1e-9, "its length")
+            values, _, advice = summary(run)
+            checks.that(not any(key.startswith("path") for key in advice), "no warning", values)
     for kinematics in ("LOG", "SMALL"):
         text = FREE.format(state="PLSTN", law="EPLA\n   200000. 0.3\n   LINEAR 1.E9 500.", more=BENT).replace("KINEM  LOG", f"KINEM  {kinematics}").replace("pull 0.5", "pull 0.05")
         run = Run(checks, "elastic", text)
