@@ -22,6 +22,7 @@ module closing_table
   use json_writer, only: json_t
   use kinds, only: wp
   use path_record, only: motion_error, stress_error, whole_stress_error
+  use pending_heat, only: pending_temperature
   use remeshing, only: stress_error_of_all
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
@@ -55,6 +56,8 @@ module closing_table
     logical :: warm = .false.
     integer :: heat_steps = 0
     real(wp) :: heat = 0.0_wp, heat_now = 0.0_wp, heat_largest = 0.0_wp, heat_cost = 2.0_wp
+    !> What the plastic work of the last step would warm the bodies by that has not become heat (SOLVE ONCE) [temperature].
+    real(wp) :: heat_due = 0.0_wp
     !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
     logical :: contact = .false.
     real(wp) :: depth = 0.0_wp, depth_share = 0.0_wp
@@ -93,6 +96,7 @@ contains
     closing%heat = solution%heat%error_sum
     closing%heat_now = solution%heat%error_now
     closing%heat_largest = solution%heat%error_largest
+    closing%heat_due = pending_temperature(scene, equations%laws, equations%drivers, solution)
     closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))
     closing%contact = size(scene%dies) > 0 .and. closing%space
     closing%depth = max(solution%worst_penetration, solution%worst_sample)
@@ -217,7 +221,7 @@ contains
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (THETA)', '')
     if (closing%heat_steps > 0) &
       call row('in time', 'heat: '//to_text(closing%heat_now, 3)//' [temperature] at the end, at most ' &
-               //to_text(closing%heat_largest, 3), &
+               //to_text(closing%heat_largest, 3)//work_not_heat(), &
                times(closing%heat_cost)//' the time: shorter steps')
     if (closing%contact) then
       words = 'depth '//to_text(closing%depth, 3)
@@ -232,6 +236,14 @@ contains
     if (.not. allocated(lines)) allocate (lines(0))
 
   contains
+
+    !> Temperatures are behind by the work of the last step.
+    function work_not_heat() result(words)
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (closing%heat_due > 0) words = '; '//to_text(closing%heat_due, 3)//' behind the work (SOLVE)'
+    end function work_not_heat
 
     !> The largest errors of the run.
     function on_all_meshes() result(words)
@@ -320,6 +332,7 @@ contains
       call json%add('end', closing%heat_now)
       call json%add('largest', closing%heat_largest)
       call json%add('sum', closing%heat)
+      if (closing%heat_due > 0) call json%add('work_not_heat', closing%heat_due)
       call json%add('half_costs', closing%heat_cost)
       call json%end_object()
     end if
