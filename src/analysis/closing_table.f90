@@ -58,6 +58,8 @@ module closing_table
     real(wp) :: heat = 0.0_wp, heat_now = 0.0_wp, heat_largest = 0.0_wp, heat_cost = 2.0_wp
     !> What the plastic work of the last step would warm the bodies by that has not become heat (SOLVE ONCE) [temperature].
     real(wp) :: heat_due = 0.0_wp
+    !> Error of the stress that the errors of temperatures make, where no law flows.
+    real(wp) :: heat_stress = 0.0_wp
     !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
     logical :: contact = .false.
     real(wp) :: depth = 0.0_wp, depth_share = 0.0_wp
@@ -96,6 +98,7 @@ contains
     closing%heat = solution%heat%error_sum
     closing%heat_now = solution%heat%error_now
     closing%heat_largest = solution%heat%error_largest
+    if (solution%work%elastic > energy_without_strain(scene, equations, volume)) closing%heat_stress = solution%heat%stress_error
     closing%heat_due = pending_temperature(scene, equations%laws, equations%drivers, solution)
     closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))
     closing%contact = size(scene%dies) > 0 .and. closing%space
@@ -221,7 +224,7 @@ contains
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (THETA)', '')
     if (closing%heat_steps > 0) &
       call row('in time', 'heat: '//to_text(closing%heat_now, 3)//' [temperature] at the end, at most ' &
-               //to_text(closing%heat_largest, 3)//work_not_heat(), &
+               //to_text(closing%heat_largest, 3)//stress_of_heat()//work_not_heat(), &
                times(closing%heat_cost)//' the time: shorter steps')
     if (closing%contact) then
       words = 'depth '//to_text(closing%depth, 3)
@@ -236,6 +239,14 @@ contains
     if (.not. allocated(lines)) allocate (lines(0))
 
   contains
+
+    !> What temperatures err makes an elastic stress err.
+    function stress_of_heat() result(words)
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (closing%heat_stress > 0) words = '; stress '//percent(closing%heat_stress)
+    end function stress_of_heat
 
     !> Temperatures are behind by the work of the last step.
     function work_not_heat() result(words)
@@ -332,6 +343,7 @@ contains
       call json%add('end', closing%heat_now)
       call json%add('largest', closing%heat_largest)
       call json%add('sum', closing%heat)
+      if (closing%heat_stress > 0) call json%add('stress_pct', 100*closing%heat_stress)
       if (closing%heat_due > 0) call json%add('work_not_heat', closing%heat_due)
       call json%add('half_costs', closing%heat_cost)
       call json%end_object()

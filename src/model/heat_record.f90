@@ -20,6 +20,8 @@ module heat_record
     !> What the step errs itself in the states of points with kinetics, along temperatures that bend within it (kinetics_error;
     !> ngroup); not allocated where that is not known.
     type(state_error_t), allocatable :: phases(:)
+    !> Where no law flows, at the end of a run: error of the stress that comes of them, over the stress.
+    real(wp) :: stress_error = 0.0_wp
     logical :: above = .false.
     !> It must be shortened by its error; largest factor for the step that follows.
     logical :: too_long = .false.
@@ -40,6 +42,8 @@ module heat_record
     !> Temperatures of the nodes that these make: those of a run in shorter steps less those of this one (nnode) [temperature].
     real(wp), allocatable :: temperature_error(:)
     real(wp) :: error_of_mesh = 0.0_wp, error_now = 0.0_wp, error_largest = 0.0_wp
+    !> Error of the stress that they make at the end, over the stress, where no law flows.
+    real(wp) :: stress_error = 0.0_wp
     !> Attempts shortened by their error; steps of the least length that are above it.
     integer :: shortened = 0, above = 0
     !> Steps with temperatures beyond those that can be there, and the farthest [temperature]; steps made again for that.
@@ -63,6 +67,7 @@ contains
       record%error_now = max(record%error_now - record%error_of_mesh, 0.0_wp) + step%error_now
       record%error_of_mesh = step%error_now
       record%error_largest = max(record%error_largest, record%error_now)
+      record%stress_error = step%stress_error
       record%content_error = step%content_error
       record%die_error = step%die_error
       record%temperature_error = step%temperature_error

@@ -24,6 +24,8 @@ module path_record
     type(state_error_t), allocatable :: states(:)   !! (ngroup)
     real(wp) :: stress_whole = 0.0_wp   !! [energy^0.5]
     logical :: known = .false.
+    !> Temperatures err in it.
+    logical :: warm = .false.
     !> Points of contact change in it.
     logical :: jumps = .false.
     !> Root of the elastic energy, its error by this step, and how much is left at the end of the step of an error at its start.
@@ -52,6 +54,8 @@ module path_record
     !> The last root itself, and the error of the stress then with what it owes to that of the motion; what is left in it of the one
     !> with which the meshes and operations before ended; and how much of an error that could not be carried on, as a share of it.
     real(wp) :: stress = 0.0_wp, stress_whole = 0.0_wp, whole_before = 0.0_wp, unknown = 0.0_wp
+    !> An error could not be carried on while temperatures erred: what they make of the stress since is not known.
+    logical :: lost = .false.
     !> Root of the elastic energy at the stress that made bodies flow then.
     real(wp) :: flow = 0.0_wp
     !> Steps with an estimate, attempts shortened by it, and steps above what is allowed.
@@ -95,8 +99,6 @@ module path_record
   real(wp), parameter :: least_share = 0.75_wp
   !> Stresses below this share of those that make bodies flow are nearly none: steps are bounded as if they were so large.
   real(wp), parameter :: nearly_none = 0.01_wp
-  !> Errors up to this share of these are linear in what makes them, also where they are larger than the stress.
-  real(wp), parameter :: linear_up_to = 0.1_wp
   !> The recent mean of s is k/t^k times the integral of s t^(k-1) dt with this k: that of about the last third of the time.
   real(wp), parameter :: recent = 4.0_wp
 
@@ -148,6 +150,7 @@ contains
     real(wp) :: before
 
     record%tried_length = 0
+    record%lost = record%lost .or. (step%warm .and. .not. step%known)
     if (step%interpolated) then
       record%quiet = record%quiet - 1
       record%pending_time = record%pending_time + dt
@@ -270,7 +273,7 @@ contains
     real(wp) :: scale
 
     scale = stress_scale(record, record%stress)
-    known = record%unknown < forgotten .and. record%stress_whole <= largest_linear(scale, record%flow)
+    known = record%unknown < forgotten .and. .not. record%lost .and. record%stress_whole <= largest_linear(scale, record%flow)
     share = stress_error(record)
     if (known .and. scale > 0) share = record%stress_whole/scale
   end subroutine whole_stress_error
@@ -285,12 +288,12 @@ contains
     scale = max(stress_scale(record, stress), nearly_none*flow)
   end function bound_scale
 
-  !> Largest error of the stress that is carried on by derivatives: as large as the stress, or small beside what makes bodies flow.
+  !> Largest error of the stress that is carried on by derivatives: as large as the stress, or as what makes bodies flow.
   pure function largest_linear(scale, flow) result(largest)
     real(wp), intent(in) :: scale, flow   !! of the stress, and at flow [energy^0.5]
     real(wp) :: largest
 
-    largest = max(scale, linear_up_to*flow)
+    largest = max(scale, flow)
   end function largest_linear
 
   !> What an error of the stress is compared with: the stress now, or a share of its recent mean where that is more, as when a load

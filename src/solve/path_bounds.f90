@@ -10,6 +10,7 @@
 !> step that was shortened in vain is accepted, counted as above the bound, and the steps after it are left alone for a while.
 module path_bounds
   use equations, only: equations_t
+  use heat_stress, only: find_stress_of_heat
   use kinds, only: eps, wp
   use path_error, only: at_corner, bend_of, estimate_path
   use path_record, only: bound_scale, mean_square, path_record_t, path_step_t, stress_before
@@ -50,10 +51,14 @@ contains
     logical :: quiet, last, done
     integer :: timer
 
-    if (.not. (outcome%converged .and. scene%follows_path)) return
+    if (.not. outcome%converged) return
+    last = .not. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
+    if (.not. scene%follows_path) then
+      if (last) call find_stress_of_heat(scene, equations, solution, dt, at_hand, outcome)
+      return
+    end if
     call equations%timers%add('path error', timer)
     call equations%timers%start(timer)
-    last = .not. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
     outcome%path%bend = bend_of(equations, solution, dt, outcome%du)
     quiet = is_quiet(scene, solution, dt, outcome%path%bend, last)
     if (quiet) then

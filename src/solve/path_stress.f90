@@ -32,7 +32,7 @@ module path_stress
   use step_outcome, only: outcome_t
   implicit none
   private
-  public :: carry_errors, carry_errors_in_quiet
+  public :: carry_errors, carry_errors_in_quiet, difference, stress_of
 
   !> The share of the errors by which they are carried on.
   real(wp), parameter :: small = 1.0e-3_wp
@@ -42,7 +42,7 @@ module path_stress
 contains
 
   !> Errors at the end of the step; not known where one of the other states cannot be made, or where that of the stress is as large
-  !> as the stress, of which derivatives say nothing: then they begin anew.
+  !> as the stress and as what makes bodies flow, of which derivatives say nothing: then they begin anew.
   !>
   !> Steps without an estimate before it have added nothing yet (carry_errors_in_quiet). They are taken to have erred as this one
   !> (error_weight): what they would have added is among the errors at the start. Their motions balanced it when it was made, so
@@ -66,6 +66,7 @@ contains
 
     outcome%path%error = solution%path%error
     call follow_heat(scene, equations, solution, active, dt, small, outcome, warmth, done)
+    outcome%path%warm = warmth%any
     if (.not. done) return
     outcome%path%known = .not. (any_error(solution, active) .or. warmth%any &
                                 .or. max(outcome%path%motion_error, abs(outcome%path%stress_error)) > 0)
@@ -105,6 +106,7 @@ contains
       outcome%path%error = solution%path%error + on_nodes(equations, share*answer + (1 - left)*before*own)
     else
       outcome%path%states = sum_of(added, -1.0_wp, added)
+      call add_phases(warmth, outcome%path%states)
     end if
 
   contains
@@ -146,6 +148,7 @@ contains
     ! the books want the element forces of the step
     element_force = equations%buffers%force
     call follow_heat(scene, equations, solution, active, dt, small, outcome, warmth, done)
+    outcome%path%warm = warmth%any
     outcome%path%known = done .and. .not. (any_error(solution, active) .or. warmth%any)
     if (done .and. .not. outcome%path%known) then
       call start_with_errors(equations, solution, active, warmth, none, 0.0_wp, other, errors)

@@ -10,7 +10,7 @@ and by default. `estimated`: the same and an upset billet with steps of one leng
 over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
 `carried`: the error of the stress that the closing table tells, over the difference to a run with steps of 1/16, where a load rises, rests,
 goes on more slowly, turns and lets go: tubes under pressure, bent beams, a cantilever with a moved end, plastic and in creep; a cylinder that cools, its temperatures known.
-`heated`: the same of cylinders whose temperatures, and phases, are found by implicit Euler: their errors are in that of the stress.
+`heated`: the same of cylinders whose temperatures, and phases, are found by implicit Euler: their errors are in that of the stress; `elastic`: the same where no law flows.
 `tight`: bounds of 1/16 and 1/64. `free`: elastic and uniform plastic bars take the steps they take without bounds, elastic ones on any way. Long steps that a deck allows end with a warning.
 """
 import csv
@@ -371,6 +371,26 @@ def heated(checks):
             checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
 
 
+def elastic(checks):
+    """The same where no law flows: the stress of a cylinder that cools errs by what its temperatures do."""
+    law = "LAW    m ELATH\n   TEMP 0.\n   210000. 0.3 1.E-5\n   TEMP 600.\n   150000. 0.3 1.6E-5\n"
+    heat = "LAW    heat HEAT\n   30. 4.5\n"
+    deck = re.sub(r"(?m)^LAW    heat .*\n.*\n.*\n", heat, re.sub(r"(?m)^LAW    m .*\n.*\n.*\n", law, QUENCHED)).replace("T 850.", "T 500.")
+    fine = Run(checks, "elastic-fine", deck.format(exchange=3., end=10., step=0.03, more="THETA  TRBDF2\n"))
+    if not fine.ok:
+        return
+    truth = fine.state("part", *STRESS)
+    for step, more in ((0.5, ""), (0.5, "SOLVE  MONOLITHIC\n"), (1.0, "THETA  TRBDF2\n")):
+        run = Run(checks, "elastic-heated", deck.format(exchange=3., end=10., step=step, more=more))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+            told = json.load(file)["accuracy"]["heat"].get("stress_pct", 0)
+        true = 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
+        print(f"{'elastic':22s} {len(run.history['step']):6d} {true:9.4f} {told:9.4f} {told/true:11.2f}")
+        checks.that(CARRIED[0] <= told/true <= CARRIED[1], f"elastic, {step:g} s, {more.split()[-1:]}: told error of the stress", told/true)
+
+
 def tight(checks):
     """Bounds of 1/16 and 1/64 of the default: they are kept, at four times the steps, and few attempts are made in vain."""
     print(f"\n{'tight':22s} {'bound':>9s} {'steps':>6s} {'in vain':>8s} {'told':>9s} {'error':>9s}")
@@ -479,6 +499,7 @@ def main():
         estimated(checks)
         carried(checks)
         heated(checks)
+        elastic(checks)
         tight(checks)
         free(checks)
         warned(checks)

@@ -10,7 +10,7 @@ from .words import brief
 ROWS: List[Tuple[str, str, Dict[str, str]]] = [
     ("space", "in space", {"stress_pct": "stress {} %", "strain_pct": "strain {} %"}),
     ("path", "in time, by the path within steps", {"motion_pct": "motion {} % in sum", "stress_pct": "stress {} % at the end"}),
-    ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "work_not_heat": "{} behind the work (SOLVE)"}),
+    ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "stress_pct": "stress {} %", "work_not_heat": "{} behind the work (SOLVE)"}),
     ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
 ]
 # Words for the stress where `stress_known` is false.
