@@ -22,6 +22,7 @@ module closing_table
   use json_writer, only: json_t
   use kinds, only: wp
   use path_record, only: motion_error, stress_error, whole_stress_error
+  use pending_heat, only: pending_temperature
   use remeshing, only: stress_error_of_all
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
@@ -55,6 +56,10 @@ module closing_table
     logical :: warm = .false.
     integer :: heat_steps = 0
     real(wp) :: heat = 0.0_wp, heat_now = 0.0_wp, heat_largest = 0.0_wp, heat_cost = 2.0_wp
+    !> What the plastic work of the last step would warm the bodies by that has not become heat (SOLVE ONCE) [temperature].
+    real(wp) :: heat_due = 0.0_wp
+    !> Error of the stress that the errors of temperatures make, where no law flows.
+    real(wp) :: heat_stress = 0.0_wp
     !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
     logical :: contact = .false.
     real(wp) :: depth = 0.0_wp, depth_share = 0.0_wp
@@ -93,6 +98,8 @@ contains
     closing%heat = solution%heat%error_sum
     closing%heat_now = solution%heat%error_now
     closing%heat_largest = solution%heat%error_largest
+    if (solution%work%elastic > energy_without_strain(scene, equations, volume)) closing%heat_stress = solution%heat%stress_error
+    closing%heat_due = pending_temperature(scene, equations%laws, equations%drivers, solution)
     closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))
     closing%contact = size(scene%dies) > 0 .and. closing%space
     closing%depth = max(solution%worst_penetration, solution%worst_sample)
@@ -192,6 +199,7 @@ contains
     type(string_t), allocatable, intent(out) :: lines(:)   !! (nline)
     type(string_t), allocatable :: more(:)
     character(len=:), allocatable :: words
+    logical :: without_heat
 
     allocate (lines(0))
     call put('  accuracy (estimates)                                    half of it costs')
@@ -205,16 +213,18 @@ contains
       if (closing%meshes > 1) call row('', on_all_meshes(), to_text(sum(closing%seconds), 3)//' s of processor in all, ' &
         //to_text(closing%seconds(remesher_task), 3)//' s of the remesher')
     end if
+    without_heat = closing%warm .and. closing%heat_steps == 0
     if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
     if (closing%path) &
       call row('in time', 'path: motion '//percent(closing%motion)//', stress' &
                //trim(merge('          ', ' at least ', closing%whole_known))//' '//percent(closing%path_stress) &
-               //trim(merge('                 ', ' (at this motion)', closing%whole_known)), &
+               //trim(merge('                 ', ' (at this motion)', closing%whole_known)) &
+               //trim(merge(' (without that of temperatures)', '                               ', without_heat)), &
                times(closing%path_cost)//' the time: half the steps'' length')
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (THETA)', '')
     if (closing%heat_steps > 0) &
       call row('in time', 'heat: '//to_text(closing%heat_now, 3)//' [temperature] at the end, at most ' &
-               //to_text(closing%heat_largest, 3), &
+               //to_text(closing%heat_largest, 3)//stress_of_heat()//work_not_heat(), &
                times(closing%heat_cost)//' the time: shorter steps')
     if (closing%contact) then
       words = 'depth '//to_text(closing%depth, 3)
@@ -229,6 +239,22 @@ contains
     if (.not. allocated(lines)) allocate (lines(0))
 
   contains
+
+    !> What temperatures err makes an elastic stress err.
+    function stress_of_heat() result(words)
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (closing%heat_stress > 0) words = '; stress '//percent(closing%heat_stress)
+    end function stress_of_heat
+
+    !> Temperatures are behind by the work of the last step.
+    function work_not_heat() result(words)
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (closing%heat_due > 0) words = '; '//to_text(closing%heat_due, 3)//' behind the work (SOLVE)'
+    end function work_not_heat
 
     !> The largest errors of the run.
     function on_all_meshes() result(words)
@@ -308,6 +334,7 @@ contains
       call json%add('stress_pct', 100*closing%path_stress)
       call json%add('stress_at_motion_pct', 100*closing%stress_at_motion)
       if (.not. closing%whole_known) call json%add('stress_known', .false.)
+      if (closing%warm .and. closing%heat_steps == 0) call json%add('stress_without_heat', .true.)
       call json%add('half_costs', closing%path_cost)
       call json%end_object()
     end if
@@ -316,6 +343,8 @@ contains
       call json%add('end', closing%heat_now)
       call json%add('largest', closing%heat_largest)
       call json%add('sum', closing%heat)
+      if (closing%heat_stress > 0) call json%add('stress_pct', 100*closing%heat_stress)
+      if (closing%heat_due > 0) call json%add('work_not_heat', closing%heat_due)
       call json%add('half_costs', closing%heat_cost)
       call json%end_object()
     end if

@@ -17,6 +17,7 @@ module heat_check
   use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
   use solution, only: start_fields
   use state_variables, only: find_variable
+  use steel_units, only: judge_units
   use steels, only: first_diffusive, kinetics_none, last_diffusive, martensite, phase_names, prop_hardness, steel_t
   use temperature_curves, only: is_given
   use text, only: add => add_text, string_t, to_text
@@ -32,6 +33,8 @@ module heat_check
   real(wp), parameter :: whole_share = 0.99_wp
   !> A side beside a die by less than this share of its length was meant to lie on it.
   real(wp), parameter :: nearly = 0.05_wp
+  !> What boils colder cools no parts [K].
+  real(wp), parameter :: liquid_nitrogen = 77.0_wp
   !> Absolute zero [degC].
   real(wp), parameter :: absolute_zero = -273.15_wp
   !> Half of a largest value is meant to be half.
@@ -53,6 +56,7 @@ contains
       call judge_radiation(scene, g, warnings)
     end do
     call judge_zeros(scene, laws, warnings)
+    call judge_units(scene, laws, warnings)
     if (.not. lacks_mesh(scene)) call judge_isolated(scene, laws, warnings)
     call judge_hardness(scene, warnings)
     call judge_cycle_heat(scene, laws, warnings)
@@ -158,11 +162,30 @@ contains
       if (f == 0 .or. group%exchange%kind /= by_radiation .or. size(group%connectivity) == 0) return
       call start_fields(scene, 0.0_wp, fields)
       coldest = minval(fields(f)%value(1, pack(group%connectivity, .true.)))
+      call judge_surroundings(scene, group, warnings)
       if (.not. coldest < -group%exchange%zero) return
       call add(warnings, group%name//': it begins at '//to_text(coldest, 4)//', below absolute zero, '// &
                to_text(-group%exchange%zero, 6)//': ZERO is what makes temperatures absolute')
     end associate
   end subroutine judge_radiation
+
+  !> Surroundings colder than any bath: their temperature is not in kelvin. At absolute zero itself they take up all and send
+  !> nothing.
+  subroutine judge_surroundings(scene, group, warnings)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group   !! sides that radiate
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: coldest
+
+    associate (exchange => group%exchange)
+      coldest = exchange%surroundings
+      if (exchange%surroundings_multiplier > 0) &
+        coldest = coldest*minval(scene%multipliers(exchange%surroundings_multiplier)%value)
+      if (.not. (coldest + exchange%zero > 0 .and. coldest + exchange%zero < liquid_nitrogen)) return
+      call add(warnings, group%name//': surroundings at '//to_text(coldest, 4)//' are '//to_text(coldest + exchange%zero, 4) &
+               //' K by ZERO '//to_text(exchange%zero, 5)//', colder than liquid nitrogen: ZERO is 273.15 for temperatures in degC')
+    end associate
+  end subroutine judge_surroundings
 
   !> Two multipliers are above half of their largest values at one time; one alone may be on while the other fades.
   pure function act_together(scene, one, other) result(yes)

@@ -19,7 +19,8 @@ contains
 
     advice = ''
     if (.not. motion_error(path) > largest_path_error) return
-    advice = 'the motion bends within steps, half the step halves it: take a smaller PATH (NORMS) or step (STRAT) and compare' &
+    advice = 'the motion bends within steps, or temperatures err in them; half the step halves it: take a smaller PATH (NORMS), ' &
+             //'TOL (THETA) or step (STRAT) and compare' &
              //least_steps(path)
   end function motion_advice
 

@@ -8,7 +8,7 @@ module pending_heat
   use fields, only: find_field, section_field
   use heat_sources, only: share_of_work, work_heated, work_name
   use kinds, only: wp
-  use law_api, only: driver_count, find_parameter, law_t
+  use law_api, only: driver_count, driver_temperature, find_parameter, heat_law, law_t
   use point_temperatures, only: temperature_field
   use quad8_geometry, only: derivatives, quad8_rule, quad8_rule_t
   use quadrature, only: line_rule
@@ -18,7 +18,7 @@ module pending_heat
   use state_variables, only: find_variable, name_of_heat_due, name_of_ratio
   implicit none
   private
-  public :: first_of, heat_of_friction, heat_of_work, pending, volumes_at_start
+  public :: first_of, heat_of_friction, heat_of_work, pending, pending_temperature, volumes_at_start
 
 contains
 
@@ -41,6 +41,50 @@ contains
       end do
     end do
   end function pending
+
+  !> What the plastic work among it would warm the bodies by, in the mean square of the volume at the start: by so much temperatures
+  !> are behind.
+  function pending_temperature(scene, laws, drivers, solution) result(mean)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)          !! (nlaw)
+    type(drivers_t), intent(in) :: drivers(:)   !! (ngroup) of the instant
+    type(solution_t), intent(in) :: solution
+    real(wp) :: mean   !! [temperature]
+    type(quad8_rule_t) :: rule
+    real(wp) :: square, whole
+    integer :: g, e, f
+
+    mean = 0
+    f = find_field(solution%fields, temperature_field)
+    if (f == 0) return
+    square = 0
+    whole = 0
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%material == 0) cycle
+      associate (group => scene%groups(g), material => scene%materials(scene%groups(g)%material), &
+                 law => laws(scene%materials(scene%groups(g)%material)%law_id))
+        if (law%kind /= heat_law) cycle
+        call quad8_rule(group%rule%n, rule)
+        block
+          real(wp) :: heat(group%rule%n, size(group%connectivity, 2)), given(driver_count(law), group%rule%n)
+          real(wp), dimension(group%rule%n) :: volume, taken, capacity
+
+          heat = heat_of_work(scene, laws, drivers, solution, g)
+          do e = 1, size(heat, 2)
+            volume = volumes_at_start(scene, solution, g, e)
+            whole = whole + sum(volume)
+            if (.not. any(heat(:, e) > 0)) cycle
+            given = 0
+            if (size(drivers(g)%value, 1) >= size(given, 1)) given = drivers(g)%value(:size(given, 1), 1, :, e)
+            given(driver_temperature, :) = matmul(solution%fields(f)%value(1, group%connectivity(:, e)), rule%phi(:, :rule%npoint))
+            call law%store(material, given, given, taken, capacity)
+            square = square + sum((heat(:, e)/(capacity*volume))**2*volume)
+          end do
+        end block
+      end associate
+    end do
+    if (whole > 0) mean = sqrt(square/whole)
+  end function pending_temperature
 
   !> Of friction at the points of a group; nothing where it is no heat through contact with FRIC.
   pure function heat_of_friction(scene, solution, g) result(heat)

@@ -12,7 +12,7 @@ module state_behind_sides
   use solution, only: solution_t
   implicit none
   private
-  public :: flow_behind, effusivity_of_die, effusivity, given_temperature, nearest_points
+  public :: flow_behind, effusivity_of_die, effusivity, given_temperature, mean_temperature, nearest_points
 
 contains
 

@@ -1,6 +1,7 @@
 !> What is known of the balance of heat in time: of a step, and of all steps since the start.
 module heat_record
   use kinds, only: wp
+  use path_record, only: state_error_t
   implicit none
   private
   public :: heat_record_t, heat_step_t, note_heat_step
@@ -14,6 +15,13 @@ module heat_record
     !> temperature, in the mean square.
     real(wp), allocatable :: content_error(:), die_error(:)
     real(wp) :: error_now = 0.0_wp
+    !> The temperatures of the nodes that this heat makes (nnode) [temperature].
+    real(wp), allocatable :: temperature_error(:)
+    !> What the step errs itself in the states of points with kinetics, along temperatures that bend within it (kinetics_error;
+    !> ngroup); not allocated where that is not known.
+    type(state_error_t), allocatable :: phases(:)
+    !> Where no law flows, at the end of a run: error of the stress that comes of them, over the stress.
+    real(wp) :: stress_error = 0.0_wp
     logical :: above = .false.
     !> It must be shortened by its error; largest factor for the step that follows.
     logical :: too_long = .false.
@@ -31,7 +39,11 @@ module heat_record
     !> ndie, of none where there is no temperature) [energy]; of the temperature, in the mean square: by these, by all, and the
     !> largest so far [temperature].
     real(wp), allocatable :: content_error(:), die_error(:)
+    !> Temperatures of the nodes that these make: those of a run in shorter steps less those of this one (nnode) [temperature].
+    real(wp), allocatable :: temperature_error(:)
     real(wp) :: error_of_mesh = 0.0_wp, error_now = 0.0_wp, error_largest = 0.0_wp
+    !> Error of the stress that they make at the end, over the stress, where no law flows.
+    real(wp) :: stress_error = 0.0_wp
     !> Attempts shortened by their error; steps of the least length that are above it.
     integer :: shortened = 0, above = 0
     !> Steps with temperatures beyond those that can be there, and the farthest [temperature]; steps made again for that.
@@ -55,8 +67,10 @@ contains
       record%error_now = max(record%error_now - record%error_of_mesh, 0.0_wp) + step%error_now
       record%error_of_mesh = step%error_now
       record%error_largest = max(record%error_largest, record%error_now)
+      record%stress_error = step%stress_error
       record%content_error = step%content_error
       record%die_error = step%die_error
+      record%temperature_error = step%temperature_error
       if (step%above) record%above = record%above + 1
     end if
     if (step%fell_back) record%fallbacks = record%fallbacks + 1

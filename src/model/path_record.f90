@@ -5,8 +5,8 @@ module path_record
   implicit none
   private
   public :: path_record_t, path_step_t, state_error_t
-  public :: error_weight, mean_square, motion_error, note_attempt, note_path_step, settle_path, start_path, &
-            stress_before, stress_error, stress_scale, whole_stress_error
+  public :: bound_scale, error_weight, largest_linear, mean_square, motion_error, note_attempt, note_path_step, settle_path, &
+            start_path, stress_before, stress_error, stress_scale, whole_stress_error
 
   !> Errors of the state of a group's points, of no elements where it does not flow.
   type :: state_error_t
@@ -24,10 +24,14 @@ module path_record
     type(state_error_t), allocatable :: states(:)   !! (ngroup)
     real(wp) :: stress_whole = 0.0_wp   !! [energy^0.5]
     logical :: known = .false.
+    !> Temperatures err in it.
+    logical :: warm = .false.
     !> Points of contact change in it.
     logical :: jumps = .false.
     !> Root of the elastic energy, its error by this step, and how much is left at the end of the step of an error at its start.
     real(wp) :: stress = 0.0_wp, stress_error = 0.0_wp, left = 1.0_wp
+    !> The same root at the stress that makes bodies flow.
+    real(wp) :: flow = 0.0_wp
     !> Its errors, of motion and of stress, as they are bounded; it must be shortened by them.
     real(wp) :: sizes(2) = 0.0_wp
     logical :: too_long = .false.
@@ -50,6 +54,10 @@ module path_record
     !> The last root itself, and the error of the stress then with what it owes to that of the motion; what is left in it of the one
     !> with which the meshes and operations before ended; and how much of an error that could not be carried on, as a share of it.
     real(wp) :: stress = 0.0_wp, stress_whole = 0.0_wp, whole_before = 0.0_wp, unknown = 0.0_wp
+    !> An error could not be carried on while temperatures erred: what they make of the stress since is not known.
+    logical :: lost = .false.
+    !> Root of the elastic energy at the stress that made bodies flow then.
+    real(wp) :: flow = 0.0_wp
     !> Steps with an estimate, attempts shortened by it, and steps above what is allowed.
     integer :: estimated = 0, shortened = 0, above = 0
     !> Steps still to come whose lengths are not bounded by their errors, and how many after the next that is shortened in vain.
@@ -89,6 +97,8 @@ module path_record
   !> Share of their recent mean below which stresses are small: those that pass through zero, not those that creep has relaxed by
   !> any power of the time down to -1.
   real(wp), parameter :: least_share = 0.75_wp
+  !> Stresses below this share of those that make bodies flow are nearly none: steps are bounded as if they were so large.
+  real(wp), parameter :: nearly_none = 0.01_wp
   !> The recent mean of s is k/t^k times the integral of s t^(k-1) dt with this k: that of about the last third of the time.
   real(wp), parameter :: recent = 4.0_wp
 
@@ -140,6 +150,7 @@ contains
     real(wp) :: before
 
     record%tried_length = 0
+    record%lost = record%lost .or. (step%warm .and. .not. step%known)
     if (step%interpolated) then
       record%quiet = record%quiet - 1
       record%pending_time = record%pending_time + dt
@@ -171,6 +182,7 @@ contains
     record%moved_error = max(before + mean_square(record%error), 0.0_wp)
     record%stress_error = stress_before(step, dt, record) + step%stress_error
     record%stress = step%stress
+    record%flow = step%flow
     record%whole_before = record%whole_before*step%left**(1 + record%pending_time/dt)
     record%unknown = merge(record%unknown*step%left**(1 + record%pending_time/dt), 1.0_wp, step%known)
     if (record%unknown < forgotten) record%unknown = 0
@@ -241,13 +253,13 @@ contains
     if (record%moved > 0) share = record%moved_error/record%moved
   end function motion_error
 
-  !> Error of the stress now over its scale.
+  !> Error of the stress now over the scale of its bound.
   pure function stress_error(record) result(share)
     type(path_record_t), intent(in) :: record
     real(wp) :: share
     real(wp) :: scale
 
-    scale = stress_scale(record, record%stress)
+    scale = bound_scale(record, record%stress, record%flow)
     share = 0
     if (scale > 0) share = abs(record%stress_error)/scale
   end function stress_error
@@ -261,10 +273,28 @@ contains
     real(wp) :: scale
 
     scale = stress_scale(record, record%stress)
-    known = record%unknown < forgotten .and. record%stress_whole <= scale
+    known = record%unknown < forgotten .and. .not. record%lost .and. record%stress_whole <= largest_linear(scale, record%flow)
     share = stress_error(record)
     if (known .and. scale > 0) share = record%stress_whole/scale
   end subroutine whole_stress_error
+
+  !> What bounds of the error of the stress are over: the scale of what is told, or in a part that is free of stress, as one that
+  !> cools evenly, a share of what makes it flow: over the round-off in it no step would be short enough.
+  pure function bound_scale(record, stress, flow) result(scale)
+    type(path_record_t), intent(in) :: record
+    real(wp), intent(in) :: stress, flow   !! root of the elastic energy now, and at flow [energy^0.5]
+    real(wp) :: scale
+
+    scale = max(stress_scale(record, stress), nearly_none*flow)
+  end function bound_scale
+
+  !> Largest error of the stress that is carried on by derivatives: as large as the stress, or as what makes bodies flow.
+  pure function largest_linear(scale, flow) result(largest)
+    real(wp), intent(in) :: scale, flow   !! of the stress, and at flow [energy^0.5]
+    real(wp) :: largest
+
+    largest = max(scale, flow)
+  end function largest_linear
 
   !> What an error of the stress is compared with: the stress now, or a share of its recent mean where that is more, as when a load
   !> passes through zero.

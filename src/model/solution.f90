@@ -130,7 +130,8 @@ contains
     f = find_field(scene%fields, 'die_temperature')
     nwarm = 0
     if (f > 0) nwarm = merge(size(scene%dies), 0, scene%fields(f)%declared)
-    allocate (solution%heat%content_error(nheated), solution%heat%die_error(nwarm), source=0.0_wp)
+    allocate (solution%heat%content_error(nheated), solution%heat%temperature_error(nheated), solution%heat%die_error(nwarm), &
+              source=0.0_wp)
     allocate (solution%groups(size(scene%groups)))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g))

@@ -87,8 +87,10 @@ contains
     where (equations%solves(equations%now)%equation == 0) heat = 0
     outcome%heat%content_error = solution%heat%content_error
     outcome%heat%die_error = solution%heat%die_error
+    outcome%heat%temperature_error = solution%heat%temperature_error
     call leave(equations, find_field(scene%fields, 'temperature'), heat, outcome%heat%content_error)
     call leave(equations, find_field(scene%fields, 'die_temperature'), heat, outcome%heat%die_error)
+    call leave(equations, find_field(scene%fields, 'temperature'), temperatures, outcome%heat%temperature_error)
   end subroutine carry_errors
 
   !> Errors at the places of a field as those of its unknowns, where these are solved for.
@@ -107,17 +109,17 @@ contains
   end subroutine take
 
   !> Errors of the unknowns at the places of their field; none where there is no unknown.
-  pure subroutine leave(equations, field, heat, at_places)
+  pure subroutine leave(equations, field, of_unknowns, at_places)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: field               !! in the list of the scene
-    real(wp), intent(in) :: heat(:)            !! (ndof) [energy]
-    real(wp), intent(inout) :: at_places(:)    !! (nplace), of none where the field is not declared [energy]
+    real(wp), intent(in) :: of_unknowns(:)     !! (ndof) [energy] or [temperature]
+    real(wp), intent(inout) :: at_places(:)    !! (nplace), of none where the field is not declared [the same]
     integer :: n, d
 
     do n = 1, size(at_places)
       d = equations%dofs%fields(field)%number(1, n)
       at_places(n) = 0
-      if (d > 0) at_places(n) = heat(d)
+      if (d > 0) at_places(n) = of_unknowns(d)
     end do
   end subroutine leave
 

@@ -196,7 +196,8 @@ contains
     call keep_evaluation(equations, kept)
     call flows(scene, equations, solution, dt, outcome%du, g(:, 2))
     call keep_piece(scene, equations, solution, diagonal*dt, kept%element_force, whole)
-    call content_error_of_path(scene, equations, solution, dt, 2*diagonal, piece, whole, first%du, outcome%du, heat)
+    call content_error_of_path(scene, equations, solution, dt, 2*diagonal, piece, whole, first%du, outcome%du, heat, &
+                               outcome%heat%phases)
     call add_passed(scene, equations, weights(2), passed)
     call take_passed(scene, equations, passed, kept%element_force)
     call external_forces(scene, equations%dofs, solution%time + dt, external)

@@ -14,6 +14,7 @@ module kinetics_error
   use equations, only: equations_t
   use kinds, only: wp
   use law_api, only: heat_law
+  use path_record, only: state_error_t
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
   use step_instants, only: make_instant
@@ -68,8 +69,8 @@ contains
     end do
   end subroutine keep_piece
 
-  !> What is missing in the heat contents at the end of a step. Element forces and states are kept.
-  subroutine content_error_of_path(scene, equations, solution, dt, share, first, whole, middle, du, heat)
+  !> What is missing in the heat contents and in the states of points at the end of a step. Element forces and states are kept.
+  subroutine content_error_of_path(scene, equations, solution, dt, share, first, whole, middle, du, heat, phases)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -80,6 +81,7 @@ contains
     real(wp), intent(in) :: middle(:)         !! (ndof) motion to there [unknown]
     real(wp), intent(in) :: du(:)             !! (ndof) motion of the step [unknown]
     real(wp), intent(out) :: heat(:)          !! (ndof) [energy]
+    type(state_error_t), allocatable, intent(out) :: phases(:)   !! (ngroup); not allocated where no kinetics release heat
     type(drivers_t), allocatable :: drivers(:)
     type(instant_t) :: instant
     type(report_t) :: report
@@ -105,6 +107,10 @@ contains
         buffers%force = merge(whole%heat - first%heat - instant%dt*buffers%force, 0.0_wp, of_groups(equations, active))
         call gather_forces(solve%pattern, buffers, solve%is_own, heat, magnitude)
         heat = heat/(1 - share**3 - (1 - share)**3)
+        allocate (phases(size(active)))
+        do g = 1, size(active)
+          if (active(g)) phases(g)%value = (solution%groups(g)%trial - whole%groups(g)%trial)/(1 - share**3 - (1 - share)**3)
+        end do
       end if
       buffers%force = element_force
     end associate

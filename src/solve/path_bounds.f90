@@ -10,9 +10,10 @@
 !> step that was shortened in vain is accepted, counted as above the bound, and the steps after it are left alone for a while.
 module path_bounds
   use equations, only: equations_t
+  use heat_stress, only: find_stress_of_heat
   use kinds, only: eps, wp
   use path_error, only: at_corner, bend_of, estimate_path
-  use path_record, only: mean_square, path_record_t, path_step_t, stress_before, stress_scale
+  use path_record, only: bound_scale, mean_square, path_record_t, path_step_t, stress_before
   use path_states, only: has_path, on_nodes
   use path_stress, only: carry_errors_in_quiet
   use scene, only: scene_t
@@ -50,10 +51,14 @@ contains
     logical :: quiet, last, done
     integer :: timer
 
-    if (.not. (outcome%converged .and. scene%follows_path)) return
+    if (.not. outcome%converged) return
+    last = .not. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
+    if (.not. scene%follows_path) then
+      if (last) call find_stress_of_heat(scene, equations, solution, dt, at_hand, outcome)
+      return
+    end if
     call equations%timers%add('path error', timer)
     call equations%timers%start(timer)
-    last = .not. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
     outcome%path%bend = bend_of(equations, solution, dt, outcome%du)
     quiet = is_quiet(scene, solution, dt, outcome%path%bend, last)
     if (quiet) then
@@ -118,7 +123,7 @@ contains
     if (step%motion_error > 0) &
       step%spare = aim*tighter(default%path_bound, strategy%path_bound)*step%motion/step%motion_error
     if (.not. abs(step%stress_error) > 0) return
-    room = tighter(default%rate_bound, strategy%rate_bound)*stress_scale(record, step%stress)
+    room = tighter(default%rate_bound, strategy%rate_bound)*bound_scale(record, step%stress, step%flow)
     step%spare = min(step%spare, sqrt(aim*room/abs(step%stress_error)))
   end subroutine find_spare
 
@@ -143,7 +148,7 @@ contains
     scale = step%motion
     if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
     if (step%motion_error > 0) step%sizes(of_motion) = step%motion_error/scale
-    allowed = strategy%rate_bound*stress_scale(solution%path, step%stress)
+    allowed = strategy%rate_bound*bound_scale(solution%path, step%stress, step%flow)
     if (allowed > 0) step%sizes(of_stress) = abs(step%stress_error)/allowed
   end subroutine find_sizes
 
@@ -169,7 +174,7 @@ contains
     real(wp) :: allowed, change, least, before, room, next
 
     associate (step => outcome%path, record => solution%path)
-      allowed = strategy%rate_bound*stress_scale(record, step%stress)
+      allowed = strategy%rate_bound*bound_scale(record, step%stress, step%flow)
       if (.not. (allowed > 0 .and. abs(step%stress_error) > 0)) return
       before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record)
       change = abs(step%stress - record%stress)*dt/(record%pending_time + dt)

@@ -19,8 +19,8 @@ module path_error
   use kinds, only: eps, wp
   use kinematics_api, only: first_history
   use known_motion, only: proportion
-  use path_record, only: mean_square, path_step_t, stress_scale
-  use path_states, only: advance_beside, begin_beside, has_path, on_nodes, root_energy, unbalanced_forces
+  use path_record, only: bound_scale, mean_square, path_step_t
+  use path_states, only: advance_beside, begin_beside, flow_energy, has_path, on_nodes, root_energy, unbalanced_forces
   use path_stress, only: carry_errors
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
@@ -74,6 +74,7 @@ contains
       associate (step => outcome%path)
         step%stress = root_energy(scene, equations, active, other, solution%groups)
         step%stress_error = 2*(root_energy(scene, equations, active, other, other%groups) - step%stress)
+        step%flow = flow_energy(scene, equations, active, solution)
         call unbalanced_forces(scene, equations, solution, outcome%du, residual)
         call solve_correction(equations, 2*residual, error, outcome%error, at_hand=at_hand)
         ! what follows is of no use then, and may not take the error's place
@@ -83,7 +84,7 @@ contains
         call drop_round_off(equations, solution, step)
         call carry_errors(scene, equations, solution, active, dt, error, 2*residual, other%groups, outcome)
         if (allocated(outcome%error)) exit estimate
-        small = least_share(scene%strategy)*stress_scale(solution%path, step%stress)
+        small = least_share(scene%strategy)*bound_scale(solution%path, step%stress, step%flow)
         if (max(abs(step%stress_error), abs(solution%path%stress_error), solution%path%whole_before) > small &
             .or. solution%path%unknown > 0) then
           before = root_energy(scene, equations, active, solution, solution%groups, committed=.true.)

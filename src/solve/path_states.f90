@@ -8,14 +8,16 @@ module path_states
   use equations, only: equations_t
   use fields, only: displacement_field, section_field
   use kinds, only: wp
-  use law_api, only: law_t, solid_law
+  use kinematics_api, only: first_history
+  use law_api, only: driver_count, driver_temperature, law_t, solid_law
   use scene, only: role_body, role_second, scene_t
   use solution, only: group_state_t, solution_t
+  use state_behind_sides, only: mean_temperature
   use step_instants, only: make_instant
   use timers, only: ledger_t
   implicit none
   private
-  public :: advance_beside, begin_beside, has_path, of_unknowns, on_nodes, root_energy, unbalanced_forces
+  public :: advance_beside, begin_beside, flow_energy, has_path, of_unknowns, on_nodes, root_energy, unbalanced_forces
 
 contains
 
@@ -129,6 +131,44 @@ contains
     end do
     root = sqrt(max(root, 0.0_wp))
   end function root_energy
+
+  !> Root of the elastic energy of bodies that flow at the stress that makes them flow, at the start of the step; a point of each
+  !> element stands for it. Bodies that creep at any stress have that of their present rate.
+  function flow_energy(scene, equations, active, solution) result(root)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical, intent(in) :: active(:)          !! (ngroup) bodies that flow
+    type(solution_t), intent(in) :: solution
+    real(wp) :: root   !! [energy^0.5]
+    type(totals_t) :: totals
+    real(wp), allocatable :: x(:, :, :), given(:)
+    real(wp) :: young, poisson, density
+    integer :: g, e
+
+    root = 0
+    do g = 1, size(active)
+      if (.not. active(g)) cycle
+      associate (group => scene%groups(g), row => equations%elems(scene%groups(g)%elem_id), &
+                 material => scene%materials(scene%groups(g)%material), drivers => equations%drivers(g)%value, &
+                 law => equations%laws(scene%materials(scene%groups(g)%material)%law_id), state => solution%groups(g)%committed)
+        if (.not. associated(law%elastic)) cycle
+        call group_geometry(scene, group, row, solution%fields(displacement_field)%value, x)
+        call row%measure(scene, group, law, solution%fields(section_field)%value(:, 1), solution%penalty_share, x, state, state, &
+                         totals)
+        allocate (given(driver_count(law)), source=0.0_wp)
+        density = 0
+        do e = 1, size(state, 3)
+          if (size(drivers, 1) > 0) given = drivers(:, 1, 1, e)
+          given(driver_temperature) = mean_temperature(scene, solution, group, e)
+          call law%elastic(material, given(driver_temperature), young, poisson)
+          density = density + law%flow_stress(material, given, state(first_history:, 1, e))**2/(2*young)
+        end do
+        deallocate (given)
+        root = root + density/size(state, 3)*totals%volume
+      end associate
+    end do
+    root = sqrt(root)
+  end function flow_energy
 
   !> Displacements of nodes as a motion of the unknowns.
   pure function of_unknowns(equations, displacement) result(motion)

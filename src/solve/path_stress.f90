@@ -14,24 +14,25 @@
 !> another stress alone is returned by the laws and forgotten, or lies within and is kept, as its sign is.
 !>
 !> All of it is made with a thousandth of the errors, so that it is linear, and solutions with the matrix of the step balance it.
+!> Errors of temperatures in time, and of the phases that follow them, are among those of the step (path_heat).
 !> What they leave out of balance is balanced in the next step. Where the matrix is that of points that flow and the answer is
 !> elastic, they go too far: then the answer is shortened as a line search does.
 module path_stress
   use contact_changes, only: contact_differs
   use corrections, only: solve_correction
   use dofs, only: move_fields
-  use drivers, only: drivers_t
   use equations, only: equations_t
   use kinds, only: wp
   use kinematics_api, only: first_history
-  use path_record, only: error_weight, path_record_t, path_step_t, state_error_t, stress_scale
+  use path_heat, only: follow_heat, warmth_t
+  use path_record, only: error_weight, largest_linear, path_record_t, path_step_t, state_error_t, stress_scale
   use path_states, only: advance_beside, begin_beside, of_unknowns, on_nodes, root_energy, unbalanced_forces
   use scene, only: plane_stress, scene_t
   use solution, only: group_state_t, solution_t
   use step_outcome, only: outcome_t
   implicit none
   private
-  public :: carry_errors, carry_errors_in_quiet
+  public :: carry_errors, carry_errors_in_quiet, difference, stress_of
 
   !> The share of the errors by which they are carried on.
   real(wp), parameter :: small = 1.0e-3_wp
@@ -41,7 +42,7 @@ module path_stress
 contains
 
   !> Errors at the end of the step; not known where one of the other states cannot be made, or where that of the stress is as large
-  !> as the stress, of which derivatives say nothing: then they begin anew.
+  !> as the stress and as what makes bodies flow, of which derivatives say nothing: then they begin anew.
   !>
   !> Steps without an estimate before it have added nothing yet (carry_errors_in_quiet). They are taken to have erred as this one
   !> (error_weight): what they would have added is among the errors at the start. Their motions balanced it when it was made, so
@@ -56,7 +57,7 @@ contains
     real(wp), intent(in) :: force(:)                 !! (ndof) that it balances [residual]
     type(group_state_t), intent(in) :: halves(:)     !! (ngroup) states by two halves, as trial states
     type(outcome_t), intent(inout) :: outcome
-    type(drivers_t), allocatable :: drivers(:)
+    type(warmth_t) :: warmth
     type(state_error_t) :: added(size(active)), errors(size(active))
     type(solution_t) :: other
     real(wp), dimension(size(own)) :: answer, residual, after
@@ -64,19 +65,21 @@ contains
     logical :: done
 
     outcome%path%error = solution%path%error
-    outcome%path%known = .not. (any_error(solution, active) .or. max(outcome%path%motion_error, abs(outcome%path%stress_error)) > 0)
+    call follow_heat(scene, equations, solution, active, dt, small, outcome, warmth, done)
+    outcome%path%warm = warmth%any
+    if (.not. done) return
+    outcome%path%known = .not. (any_error(solution, active) .or. warmth%any &
+                                .or. max(outcome%path%motion_error, abs(outcome%path%stress_error)) > 0)
     if (outcome%path%known) return
     outcome%path%error = outcome%path%error + on_nodes(equations, own)
     outcome%path%jumps = contact_differs(scene, solution)
     weight = share_where_contact_changes(outcome%path, dt, solution%path)
     before = weight*(error_weight(outcome%path, dt, solution%path) - 1)
     added = difference(halves, solution%groups, active, 2.0_wp)
-    allocate (drivers, source=equations%drivers)
-    drivers%vary = .false.
-    call start_with_errors(equations, solution, active, added, before, other, errors)
+    call start_with_errors(equations, solution, active, warmth, added, before, other, errors)
     left = 1
     if (before > 0) left = size_of(errors)
-    call advance_beside(scene, equations, active, drivers, outcome%du, dt, other, done)
+    call advance_beside(scene, equations, active, warmth%drivers, outcome%du + small*warmth%change, dt, other, done)
     if (.not. done) return
     if (before > 0 .and. left > 0) left = min(size_of(difference(other%groups, solution%groups, active, 1/small))/left, 1.0_wp)
     call unbalanced_forces(scene, equations, solution, outcome%du, residual)
@@ -95,12 +98,15 @@ contains
       if (.not. done) return
     end if
     outcome%path%states = sum_of(difference(other%groups, solution%groups, active, 1/small), weight, added)
+    call add_phases(warmth, outcome%path%states)
     outcome%path%stress_whole = size_of(outcome%path%states)
-    outcome%path%known = outcome%path%stress_whole <= stress_scale(solution%path, outcome%path%stress)
+    outcome%path%known = outcome%path%stress_whole &
+                         <= largest_linear(stress_scale(solution%path, outcome%path%stress), outcome%path%flow)
     if (outcome%path%known) then
       outcome%path%error = solution%path%error + on_nodes(equations, share*answer + (1 - left)*before*own)
     else
       outcome%path%states = sum_of(added, -1.0_wp, added)
+      call add_phases(warmth, outcome%path%states)
     end if
 
   contains
@@ -108,8 +114,9 @@ contains
     !> The step from the start with errors, with this share of the answer. Contact, which is in the matrix alone, takes a part of
     !> the forces, and no more than all.
     subroutine make_with_answer()
-      call start_with_errors(equations, solution, active, added, before, other, errors)
-      call advance_beside(scene, equations, active, drivers, outcome%du + small*share*answer, dt, other, done)
+      call start_with_errors(equations, solution, active, warmth, added, before, other, errors)
+      call advance_beside(scene, equations, active, warmth%drivers, outcome%du + small*(warmth%change + share*answer), dt, other, &
+                          done)
       if (done) call unbalanced_forces(scene, equations, solution, outcome%du, after)
     end subroutine make_with_answer
 
@@ -133,21 +140,37 @@ contains
     real(wp), intent(in) :: dt                       !! [time]
     type(outcome_t), intent(inout) :: outcome
     type(state_error_t) :: none(size(active)), errors(size(active))
-    type(drivers_t), allocatable :: drivers(:)
+    type(warmth_t) :: warmth
     type(solution_t) :: other
     real(wp) :: element_force(size(equations%buffers%force))
+    logical :: done
 
-    outcome%path%known = .not. any_error(solution, active)
-    if (outcome%path%known) return
-    allocate (drivers, source=equations%drivers)
-    drivers%vary = .false.
     ! the books want the element forces of the step
     element_force = equations%buffers%force
-    call start_with_errors(equations, solution, active, none, 0.0_wp, other, errors)
-    call advance_beside(scene, equations, active, drivers, outcome%du, dt, other, outcome%path%known)
+    call follow_heat(scene, equations, solution, active, dt, small, outcome, warmth, done)
+    outcome%path%warm = warmth%any
+    outcome%path%known = done .and. .not. (any_error(solution, active) .or. warmth%any)
+    if (done .and. .not. outcome%path%known) then
+      call start_with_errors(equations, solution, active, warmth, none, 0.0_wp, other, errors)
+      call advance_beside(scene, equations, active, warmth%drivers, outcome%du + small*warmth%change, dt, other, outcome%path%known)
+      if (outcome%path%known) then
+        outcome%path%states = difference(other%groups, solution%groups, active, 1/small)
+        call add_phases(warmth, outcome%path%states)
+      end if
+    end if
     equations%buffers%force = element_force
-    if (outcome%path%known) outcome%path%states = difference(other%groups, solution%groups, active, 1/small)
   end subroutine carry_errors_in_quiet
+
+  !> The errors of phases that other formulations hold are carried on with the others.
+  pure subroutine add_phases(warmth, states)
+    type(warmth_t), intent(in) :: warmth
+    type(state_error_t), intent(inout) :: states(:)   !! (ngroup)
+    integer :: g
+
+    do g = 1, size(states)
+      if (allocated(warmth%phases(g)%value)) states(g)%value = warmth%phases(g)%value
+    end do
+  end subroutine add_phases
 
   !> The states have errors at the start of the step.
   pure function any_error(solution, active) result(yes)
@@ -176,10 +199,11 @@ contains
   end function share_where_contact_changes
 
   !> The start of the step with a small share of the errors there, and of so many times what a step adds.
-  subroutine start_with_errors(equations, solution, active, added, times, other, errors)
+  subroutine start_with_errors(equations, solution, active, warmth, added, times, other, errors)
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
+    type(warmth_t), intent(in) :: warmth             !! errors of temperatures
     type(state_error_t), intent(in) :: added(:)      !! (ngroup)
     real(wp), intent(in) :: times
     type(solution_t), intent(out) :: other
@@ -187,7 +211,7 @@ contains
     integer :: g
 
     call begin_beside(solution, other)
-    call move_fields(equations%dofs, small*of_unknowns(equations, solution%path%error), other%fields)
+    call move_fields(equations%dofs, small*(of_unknowns(equations, solution%path%error) + warmth%before), other%fields)
     do g = 1, size(active)
       if (.not. active(g)) cycle
       errors(g)%value = solution%groups(g)%error

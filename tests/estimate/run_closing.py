@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The table a run ends with: its estimates are those that cards ask for step by step, its forecast that of the run's own seconds."""
+import csv
 import json
 import os
 import re
@@ -50,6 +51,30 @@ TRACT  part 2 Y -14. q
 LIC    q
    0. 0.   1. 1.   1.0001 1.
 STRAT  0.1 1.E-4 0.1   5 3
+END
+"""
+SQUEEZED = """TITLE  A block squeezed, no heat is lost
+STATE  PLSTN
+KINEM  SMALL
+BLOCK  part PL8LS 4 m
+   0. 0.   10. 0.   10. 10.   0. 10.
+   2 1.   2 1.
+LAW    m EPLA
+   200000. 0.3
+   LINEAR 300. 500.
+ADDEL  part PL8TM warm
+LAW    warm HEAT
+   50. 3.6
+   QUINNEY 0.9
+START  T 20.
+FIXED  part 1 Y
+FIXED  part 4 X
+MOVE   part 3 Y down -0.8
+LIC    down
+   0. 0.   1. 1.
+STRAT  0.05 1.E-4 0.1   5 3
+PROBE  t MEAN T part
+PROBE  p MAX plastic_strain part
 END
 """
 STRIP = """TITLE  A strip bent over a nose, two elements thick, and let go
@@ -239,6 +264,31 @@ class Closing(unittest.TestCase):
         for place, name in (("space", "stress_pct"), ("path", "stress_pct"), ("path", "motion_pct")):
             self.assertGreater(one[place][name], 0)
             self.assertAlmostEqual(other[place][name]/one[place][name], 1, delta=1e-6, msg=name)
+
+    def test_temperatures_behind_the_work(self):
+        """A block squeezed without loss of heat: what SOLVE ONCE leaves for the next step is told, and is what is missing."""
+        told, listing, page = self.what_is_told("squeezed", SQUEEZED)
+        with open(os.path.join(self.folder, "told", "squeezed", "history.csv"), encoding="utf-8") as file:
+            row = list(csv.reader(file))[-1]
+        p = float(row[-1])
+        missing = 20 + 0.9*(300*p + 250*p*p)/3.6 - float(row[-2])
+        self.assertGreater(missing, 0.3)
+        self.assertAlmostEqual(told["heat"]["work_not_heat"]/missing, 1, delta=0.01)
+        for text in (listing, page):
+            self.assertIn(" behind the work (SOLVE)", text)
+        told, listing, _ = self.what_is_told("squeezed", SQUEEZED.replace("STRAT ", "SOLVE  CONVERGE\nSTRAT "))
+        self.assertNotIn("work_not_heat", told["heat"])
+        self.assertNotIn("behind the work", listing)
+
+    def test_stress_without_that_of_temperatures(self):
+        """A scheme whose errors in time are not estimated: the stress is told without them, and that it is."""
+        heat = "LAW    warm HEAT\n   50. 3.6\n"
+        beam = REST.replace("FIXED ", heat + "ADDEL  part PL8TM warm\nFIXED ", 1)
+        for scheme in ("", "THETA  0.5\n"):
+            told, listing, page = self.what_is_told("scheme", beam.replace("STRAT ", scheme + "STRAT "))
+            self.assertEqual(bool(scheme), "stress_without_heat" in told["path"])
+            for text in (listing, page):
+                self.assertEqual(bool(scheme), "(without that of temperatures)" in text)
 
     def test_stress_of_the_path_in_part(self):
         """A strip that necks in steps of a quarter: the error was as large as the stress, and what is left is told as a part."""

@@ -368,6 +368,9 @@ def first_geometry(checks):
 
 
 def told(checks):
+    with open(os.path.join(checks.folder, "firm.met"), "w") as file:
+        file.write("STEEL s\nSOURCE 'round numbers'\nTEMPS MS 300\nMARTEN BETA 0.011\nEXPAND TOTAL 20\nTRIP TANAKA\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\n   E 2E5\n   NU 0.3\n"
+                   "   ALPHA 1E-5\n   SY 300\nPHASE MARTENSITE\n   DEPS 0.01\n   KTP 0\nEND\n")
     steel = "STEEL s\nSOURCE 'round numbers'\nTEMPS MS 300\nMARTEN BETA 0.011\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\nEND\n"
     with open(os.path.join(checks.folder, "soft.met"), "w") as file:
         file.write(steel)
@@ -423,6 +426,29 @@ def told(checks):
             lines = [line["text"] for line in summary(run)["warnings"]]
             checks.that(["absolute zero is" in line and "by bar.2/RADIA" in line and "by LAW hot" in line for line in lines] == [True]*apart,
                         f"zeros {steel_zero:g} and {zero:g}: told", lines)
+    # units that cannot be of one deck: what is wrong, the numbers of META, and more
+    units = [("one deck", "ENERGY 1.", "", "CONVE bar 2 H 50. TS 20.\nRADIA bar 3 EPS 0.8 SIGMA 5.67E-11 ZERO 273.15 TS 20.\n", None),
+             ("in m", "ENERGY 1.E6", "", "CONVE bar 2 H 5.E4 TS 20.\nRADIA bar 3 EPS 0.8 SIGMA 5.67E-8 ZERO 273.15 TS 20.\n", "4000 x 4000 mm large"),
+             ("minutes", "ENERGY 1. TIME 60.", "", "CONVE bar 2 H 1. TS 20.\n", "the unit of length is 7.75 mm, which none is"),
+             ("W/m2/K", "ENERGY 1.", "", "CONVE bar 2 H 1000. TS 20.\n", "H reaches 1000000 W/m2/K"),
+             ("W/m2/K4", "ENERGY 1.", "", "RADIA bar 3 EPS 0.8 SIGMA 5.67E-8 ZERO 273.15 TS 20.\n", "SIGMA is 5.67e-11 there"),
+             ("two times", "ENERGY 1.", "TIME 60.", "CONVE bar 2 H 1. TS 20.\n", "both are the seconds of the unit of time"),
+             ("two stresses", "ENERGY 1.E-3 CONDUCT 1.E-3 QUINNEY 0.9", "", "CONVE bar 2 H 1.E-3 TS 20.\n", "1 MJ/m3 is 1 MPa"),
+             ("two units of energy", "ENERGY 1.E-3 CONDUCT 1.E-3", "", "CONVE bar 2 H 1.E-3 TS 20.\n", None)]
+    for name, heat, solid, cooling, words in units:
+        run = Run(checks, f"units-{name}".replace(" ", "-").replace("/", "-"), "TITLE units\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8LS 4 firm\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW firm ARBTHMET\n   STEEL firm.met s\n   STRESS 1. {solid}\nADDEL bar PL8TM hot BILINEAR\nLAW hot META\n   STEEL firm.met s\n"
+                  f"   {heat}\nSTART T 900.\nFIXED bar 1 XY\n{cooling}STRAT 0.01 0.01 0.01 4 3\nSTOP 0.01\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"]]
+            checks.that(len(lines) == (words is not None) and all(words in line for line in lines), f"units, {name}: told", lines)
+    # 20 is 20 K where ZERO is 0; nothing is colder than what only takes up
+    for around, zero, cold in ((20., 0., True), (293., 0., False), (20., 273.15, False), (0., 0., False)):
+        run = Run(checks, f"around-{around:g}-{zero:g}", "TITLE around\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 900.\nRADIA bar 2 EPS 0.8 SIGMA 5.67E-11 ZERO {zero} TS {around}\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"]]
+            checks.that(["colder than liquid nitrogen" in line for line in lines] == [True]*cold, f"surroundings of {around:g}, ZERO {zero:g}: told", lines)
     # air until water comes: never both
     run = Run(checks, "in-turns", "TITLE in turns\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
               "   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 100.\nLIC air\n   0. 1.   1. 1.   1.1 0.   2. 0.\nLIC water\n   0. 0.   1. 0.   1.1 1.   2. 1.\n"

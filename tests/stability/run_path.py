@@ -10,6 +10,7 @@ and by default. `estimated`: the same and an upset billet with steps of one leng
 over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
 `carried`: the error of the stress that the closing table tells, over the difference to a run with steps of 1/16, where a load rises, rests,
 goes on more slowly, turns and lets go: tubes under pressure, bent beams, a cantilever with a moved end, plastic and in creep; a cylinder that cools, its temperatures known.
+`heated`: the same of cylinders whose temperatures, and phases, are found by implicit Euler: their errors are in that of the stress; `elastic`: the same where no law flows.
 `tight`: bounds of 1/16 and 1/64. `free`: elastic and uniform plastic bars take the steps they take without bounds, elastic ones on any way. Long steps that a deck allows end with a warning.
 """
 import csv
@@ -161,6 +162,60 @@ STEEL = os.path.join(SOURCE, "decks", "residual_stress", "hot.met")
 HEAT = f"META\n   STEEL {STEEL} stable\n   ENERGY 1.\nSTART  T 800.\nCONVE  part 2 3 H 5. TS 20.\nSAVE   1"
 HOT = f"ARBTHMET\n   STEEL {STEEL} stable\n   STRESS 1.   TIME 1.\nTEMPE  part FROM heat/heat.g01.h5\nFIXED  part 1 Y\nFIXED  part 4 X"
 
+# A cylinder whose heat is found with the stress: file and steel, law for the mechanics, exchange, and the end.
+HARDENING = os.path.join(SOURCE, "decks", "quench_bar_trip", "hardening.met")
+QUENCHED = """TITLE  A cylinder that is quenched
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  part PL8LS 4 m
+   0. 0.   15. 0.   15. 24.   0. 24.
+   6 0.4   4 2.
+LAW    m ARBTHMET
+   STEEL {steel}
+   STRESS 1.   {own}
+ADDEL  part PL8TM heat BILINEAR
+LAW    heat META
+   STEEL {steel}
+   ENERGY 1.
+START  T 850.
+FIXED  part 1 Y
+FIXED  part 4 X
+CONVE  part 2 3 H {exchange} TS 20.
+STRAT  0.02 1.E-5 {step}   40 3
+STOP   {end}
+{more}END
+"""
+QUENCHES = {
+    "no phases": ({"steel": f"{STEEL} stable", "own": "TIME 1.", "exchange": 3., "end": 12.}, 0.5),
+    "phases of the heat": ({"steel": f"{HARDENING} hardening", "own": "", "exchange": 1., "end": 24.}, 1.0),
+    "phases of its own": ({"steel": f"{HARDENING} hardening", "own": "TIME 1.", "exchange": 1., "end": 24.}, 1.0),
+}
+
+# A sheet, free: it has no stress, through martensite and its plasticity too.
+DILATOMETER = f"""TITLE  A sheet that cools evenly
+STATE  PLSTS
+KINEM  SMALL
+BLOCK  part PL8LS 4 m
+   0. 0.   5. 0.   5. 10.   0. 10.
+   1 1.   1 1.
+LAW    m ARBTHMET
+   STEEL {HARDENING} hardening
+   STRESS 1.   {{own}}
+ADDEL  part PL8TM heat BILINEAR
+LAW    heat META
+   STEEL {HARDENING} hardening
+   ENERGY 1.
+START  T 850.
+IMPOS  part 1 2 3 4 T cool
+LIC    cool
+   0. 850.   100. 20.
+FIXED  part 1 Y
+FIXED  part 4 X
+PROBE  length NODE UY 0. 10.
+STRAT  0.1 1.E-6 2.   40 3
+{{more}}END
+"""
+
 # Another side goes to and fro meanwhile.
 BENT = """LIC    aside
    0. 0.   0.7 0.   1.3 1.   2. -1.
@@ -296,6 +351,46 @@ def carried(checks):
             checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
 
 
+def heated(checks):
+    """Errors of the stress at the end, with those of temperatures and phases, against those of short steps of TR-BDF2."""
+    print(f"\n{'heated':22s} {'steps':>6s} {'error %':>9s} {'told %':>9s} {'effectivity':>11s}")
+    for name, (words, step) in QUENCHES.items():
+        fine = Run(checks, "heated-fine", QUENCHED.format(step=step/16, more="THETA  TRBDF2\n" + OFF, **words))
+        if not fine.ok:
+            continue
+        truth = fine.state("part", *STRESS)
+        for length, more in ((step, WIDE), (step/4, WIDE), (step, "")):
+            run = Run(checks, "heated", QUENCHED.format(step=length, more=more, **words))
+            if not run.ok:
+                continue
+            with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+                whole = json.load(file)
+            told, true = whole["accuracy"]["path"], 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
+            ratio = told["stress_pct"]/true
+            print(f"{name:22s} {whole['steps']:6d} {true:9.4f} {told['stress_pct']:9.4f} {ratio:11.2f}")
+            checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
+
+
+def elastic(checks):
+    """The same where no law flows: the stress of a cylinder that cools errs by what its temperatures do."""
+    law = "LAW    m ELATH\n   TEMP 0.\n   210000. 0.3 1.E-5\n   TEMP 600.\n   150000. 0.3 1.6E-5\n"
+    heat = "LAW    heat HEAT\n   30. 4.5\n"
+    deck = re.sub(r"(?m)^LAW    heat .*\n.*\n.*\n", heat, re.sub(r"(?m)^LAW    m .*\n.*\n.*\n", law, QUENCHED)).replace("T 850.", "T 500.")
+    fine = Run(checks, "elastic-fine", deck.format(exchange=3., end=10., step=0.03, more="THETA  TRBDF2\n"))
+    if not fine.ok:
+        return
+    truth = fine.state("part", *STRESS)
+    for step, more in ((0.5, ""), (0.5, "SOLVE  MONOLITHIC\n"), (1.0, "THETA  TRBDF2\n")):
+        run = Run(checks, "elastic-heated", deck.format(exchange=3., end=10., step=step, more=more))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+            told = json.load(file)["accuracy"]["heat"].get("stress_pct", 0)
+        true = 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
+        print(f"{'elastic':22s} {len(run.history['step']):6d} {true:9.4f} {told:9.4f} {told/true:11.2f}")
+        checks.that(CARRIED[0] <= told/true <= CARRIED[1], f"elastic, {step:g} s, {more.split()[-1:]}: told error of the stress", told/true)
+
+
 def tight(checks):
     """Bounds of 1/16 and 1/64 of the default: they are kept, at four times the steps, and few attempts are made in vain."""
     print(f"\n{'tight':22s} {'bound':>9s} {'steps':>6s} {'in vain':>8s} {'told':>9s} {'error':>9s}")
@@ -328,6 +423,15 @@ def free(checks):
                 checks.that(steps[1] <= 1.15*steps[0], f"{name}: steps", steps)
                 checks.that(runs[0].history["force"][-1] == runs[1].history["force"][-1] or steps[0] != steps[1],
                             f"{name}: the same bits in the same steps")
+    for own in ("", "TIME 1."):
+        off, run = (Run(checks, "dilatometer", DILATOMETER.format(own=own, more=more)) for more in (OFF, ""))
+        if off.ok and run.ok:
+            steps = [len(one.history["step"]) for one in (off, run)]
+            checks.that(steps[1] <= 3*steps[0], f"a sheet without stress, {own}: steps", steps)
+            martensite = 1 - np.exp(-0.015*280)
+            checks.small(run.history["length"][-1]/10 - (martensite*0.0105 - 22e-6*830), 1e-9, "its length")
+            values, _, advice = summary(run)
+            checks.that(not any(key.startswith("path") for key in advice), "no warning", values)
     for kinematics in ("LOG", "SMALL"):
         text = FREE.format(state="PLSTN", law="EPLA\n   200000. 0.3\n   LINEAR 1.E9 500.", more=BENT).replace("KINEM  LOG", f"KINEM  {kinematics}").replace("pull 0.5", "pull 0.05")
         run = Run(checks, "elastic", text)
@@ -394,6 +498,8 @@ def main():
         bounded(checks)
         estimated(checks)
         carried(checks)
+        heated(checks)
+        elastic(checks)
         tight(checks)
         free(checks)
         warned(checks)

@@ -10,7 +10,7 @@ from .words import brief
 ROWS: List[Tuple[str, str, Dict[str, str]]] = [
     ("space", "in space", {"stress_pct": "stress {} %", "strain_pct": "strain {} %"}),
     ("path", "in time, by the path within steps", {"motion_pct": "motion {} % in sum", "stress_pct": "stress {} % at the end"}),
-    ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}"}),
+    ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "stress_pct": "stress {} %", "work_not_heat": "{} behind the work (SOLVE)"}),
     ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
 ]
 # Words for the stress where `stress_known` is false.
@@ -31,6 +31,8 @@ def accuracy_section(run: Run) -> Sections:
         if entry.get("stress_known") is False and name in UNKNOWN:
             words = {**words, "stress_pct": UNKNOWN[name]}
         found = ", ".join(text.format(brief(number(entry[key]), 3)) for key, text in words.items() if key in entry)
+        if entry.get("stress_without_heat") is True:
+            found += " (without that of temperatures)"
         cost = f"about {brief(number(entry['half_costs']), 2)} times the time ({HOW[name]})" if "half_costs" in entry else "\N{EN DASH}"
         rows.append(("", (escape(where), escape(found), escape(cost))))
     asked = given.get("asked")
