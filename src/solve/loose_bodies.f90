@@ -1,8 +1,8 @@
 !> Bodies that no supports and no springs hold, and which of them something acts on.
 !>
-!> Bodies that are held in X and in Y (axisymmetric ones in Y) have no free motion, and are none of these. One of these that loses its
-!> contact within a step may be carried off by round-off of the forces: where a correction is large beside the whole scene, or the
-!> matrix is singular, it is found again with diagonals that are a little larger. That changes no force.
+!> Bodies that are held in X and in Y (axisymmetric ones in Y) have no free motion, and are none of these. One of these that loses
+!> its contact within a step may be carried off by round-off of the forces: where a correction is large beside the whole scene, or
+!> the matrix is singular, it is found again with diagonals that are a little larger. That changes no force.
 module loose_bodies
   use bodies, only: bodies_of_nodes
   use contact_point, only: at_between, at_piece, at_pressure, contact_block, is_in_contact
