@@ -13,7 +13,7 @@ module closing_table
   use accuracy_plan, only: accuracy_lines, accuracy_t, add_accuracy
   use cost_file, only: cost_t, ntask, remesher_task
   use csv_reader, only: read_csv
-  use energy_books, only: energy_without_strain
+  use energy_books, only: energy_without_strain, is_drag_alone
   use equations, only: equations_t
   use errors, only: error_t
   use estimator, only: estimator_t, set_up_estimator, stress_error_now
@@ -89,7 +89,8 @@ contains
     closing%path = solution%path%estimated > 0
     closing%motion = motion_error(solution%path)
     ! where nothing is strained both errors and stresses are round-off
-    if (max(solution%path%stress, solution%path%stress_recent)**2 > energy_without_strain(scene, equations, volume)) then
+    if (max(solution%path%stress, solution%path%stress_recent)**2 > energy_without_strain(scene, equations, volume) &
+        .and. .not. is_drag_alone(solution%work)) then
       call whole_stress_error(solution%path, closing%path_stress, closing%whole_known)
       closing%stress_at_motion = stress_error(solution%path)
     end if

@@ -24,12 +24,15 @@ module energy_books
   implicit none
   private
   public :: book_stored, book_work, damped_share, damping_advice, energy_imbalance, energy_of_round_off, &
-            energy_without_strain, external_on_unknowns, imbalance_advice, missing_energy, spring_energy, start_stored
+            energy_without_strain, external_on_unknowns, imbalance_advice, is_drag_alone, missing_energy, &
+            spring_energy, start_stored
 
   !> The run warns above this share of what passed.
   real(wp), parameter :: largest_imbalance = 0.01_wp
   !> And where viscous forces took more than this share of it.
   real(wp), parameter :: largest_damping = 0.01_wp
+  !> Drag that took more than this share of it resisted alone.
+  real(wp), parameter :: of_drag = 0.1_wp
   !> Stresses carry some eps of the modulus as round-off, from strains that come from gradients of order one; on the motion of a
   !> step they make work. As many operations as this stand behind a stress and a sum.
   real(wp), parameter :: operations = 1000
@@ -285,6 +288,14 @@ contains
 
     energy = solution%work%round_off + energy_without_strain(scene, equations, volume)
   end function energy_of_round_off
+
+  !> Bodies were pushed about against their drag, and hardly strained: it took more than a tenth of all that passed.
+  elemental function is_drag_alone(work) result(yes)
+    type(work_t), intent(in) :: work
+    logical :: yes
+
+    yes = work%drag > of_drag*work%passed
+  end function is_drag_alone
 
   !> What round-off of strains may be worth in bodies that have none.
   pure function energy_without_strain(scene, equations, volume, strain) result(energy)

@@ -5,7 +5,7 @@
 module floating_bodies
   use contact_outlook, only: gaps_at_rest
   use dies, only: is_deformable
-  use energy_books, only: energy_without_strain
+  use energy_books, only: energy_without_strain, is_drag_alone
   use equations, only: equations_t
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
@@ -25,9 +25,6 @@ module floating_bodies
   !> A body that is carried along rigidly has strains of round-off over the lengths of its way and of its sides: far below this one,
   !> as is that of no load worth the name (the weight of 1 mm of steel: 4e-10).
   real(wp), parameter :: unstrained = 1.0e-10_wp
-
-  !> Drag on what nothing holds took more than this share of the work.
-  real(wp), parameter :: of_drag = 0.1_wp
 
 contains
 
@@ -89,7 +86,7 @@ contains
     if (size(warnings) > 0 .or. .not. scene%fields(displacement_field)%declared) return
     nothing = energy_without_strain(scene, equations, volume, unstrained)
     associate (work => solution%work)
-      if (work%passed > energy_without_strain(scene, equations, volume) .and. work%drag < of_drag*work%passed &
+      if (work%passed > energy_without_strain(scene, equations, volume) .and. .not. is_drag_alone(work) &
           .and. (solution%worst_penetration > 0 .or. work%elastic > nothing .or. work%flow > nothing)) return
     end associate
     do k = 1, size(scene%dies)

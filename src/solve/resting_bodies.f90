@@ -11,9 +11,9 @@
 !>     f = drag E V/L**2 du
 !>
 !> with the volume V around a node, the modulus E of its body and the extent L, as long as no pressure is above a few times what
-!> that makes: what is pushed resists a little, friction acts, and of all ways that dies leave it one of the shortest is gone, for any
-!> round-off and in any axes. The force is far below those of a body that is strained. It also makes the matrix regular. Attempts at
-!> a step that failed are followed by ones with more of it.
+!> that makes: what is pushed resists a little, friction acts, and of all ways that dies leave it one of the shortest is gone, for
+!> any round-off and in any axes. The force is far below those of a body that is strained. It also makes the matrix regular.
+!> Attempts at a step that failed are followed by ones with more of it.
 module resting_bodies
   use equations, only: equations_t
   use fields, only: displacement_field
