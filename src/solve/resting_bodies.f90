@@ -19,7 +19,7 @@ module resting_bodies
   use fields, only: displacement_field
   use kinds, only: wp
   use loose_bodies, only: mark_acted_on
-  use scene, only: role_contact, scene_t
+  use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use volumes_of_unknowns, only: volumes_of_nodes
   implicit none
@@ -57,7 +57,7 @@ contains
       do b = 0, maxval(loose)
         factor = 0
         if (b > 0 .and. .not. pressed(b)) &
-          factor = equations%more_drag*drag*modulus_of(scene, loose, b)/square_of_extent(x, loose == b)
+          factor = equations%more_drag*drag*modulus_of(scene, equations, b)/square_of_extent(x, loose == b)
         do k = 1, size(loose)
           if (loose(k) /= b) cycle
           do c = 1, 2
@@ -87,25 +87,29 @@ contains
     work = sum(equations%drag*du**2)
   end function work_of_drag
 
-  !> Largest Young's modulus behind the contacts of a body; of one without a contact, of all.
-  pure function modulus_of(scene, loose, body) result(modulus)
+  !> Largest Young's modulus of a body, at the first temperature of its cards.
+  pure function modulus_of(scene, equations, body) result(modulus)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: loose(:)   !! (nnode) of find_loose_bodies
+    type(equations_t), intent(in) :: equations
     integer, intent(in) :: body
-    real(wp) :: modulus               !! [stress]
-    logical :: of_body
+    real(wp) :: modulus   !! [stress]
+    real(wp) :: temperature, young, poisson
     integer :: g
 
     modulus = 0
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%role /= role_contact) cycle
-        of_body = loose(group%connectivity(1, 1)) == body
-        if (group%pairs > 0) of_body = of_body .or. loose(scene%dies(group%die)%nodes(1, 1)) == body
-        if (of_body) modulus = max(modulus, group%modulus)
+        if (.not. is_solid(group) .or. group%material == 0) cycle
+        if (equations%loose(group%connectivity(1, 1)) /= body) cycle
+        associate (material => scene%materials(group%material))
+          if (.not. associated(equations%laws(material%law_id)%elastic)) cycle
+          temperature = 0
+          if (allocated(material%temperatures)) temperature = material%temperatures(1)
+          call equations%laws(material%law_id)%elastic(material, temperature, young, poisson)
+        end associate
+        modulus = max(modulus, young)
       end associate
     end do
-    if (.not. modulus > 0) modulus = maxval(scene%groups%modulus)
   end function modulus_of
 
   !> Square of the diagonal of the box around some nodes [length^2].

@@ -86,6 +86,21 @@ def creeping_strip_let_go(checks):
     return abs(run.history["force_y_d"][-1])/abs(run.history["force_y_d"]).max()
 
 
+def heated_free(checks):
+    """A plate heated on one side, that nothing holds and nothing touches: the stress of one that is just held, in as few steps."""
+    runs = [checks.run(f"heated-{name}", deck(
+        "PLSTS 1.", "LOG", "BLOCK b PL8LS 4 m\n 0. 0. 100. 0. 100. 5. 0. 5.\n 20 1. 3 1.\n",
+        "LAW m ELATH\n 200000. 0.3 1.2E-5\nADDEL b PL8TM heat\nLAW heat HEAT\n 50. 3.6\nSTART T 20.\n",
+        f"{held}IMPOS b 1 T hot 20.\nLIC hot\n 0. 1. 0.5 10. 1. 10.\nPROBE s MAX mises b\nPROBE u NODE UY 50. 0.\n", "STRAT 0.1 1.E-6 0.1 5 3"))
+        for name, held in (("free", ""), ("held", "FIXED POINT 50. 0. XY\nFIXED POINT 100. 0. Y\n"))]
+    free, held = (run.history for run in runs)
+    if len(free["time"]) > 2*len(held["time"]):
+        return 1.0
+    # and it stays where it bows, by a tenth of its thickness at most
+    peaks = [history["s"].max() for history in (free, held)]
+    return max(abs(peaks[0]/peaks[1] - 1), float(abs(free["u"]).max() > 0.5))
+
+
 CASES = (Case("free billets under dies that lean", free_billets, 1e-3), Case("free strip on rollers", free_strip, 1e-4),
-         Case("creeping strip let go", creeping_strip_let_go, 1e-9),
+         Case("creeping strip let go", creeping_strip_let_go, 1e-9), Case("heated and free", heated_free, 1e-5),
          Case("sheets on rollers", sheets_on_rollers, 5e-4))
