@@ -79,6 +79,8 @@ contains
         call solve_correction(equations, 2*residual, error, outcome%error, at_hand=at_hand)
         ! what follows is of no use then, and may not take the error's place
         if (allocated(outcome%error)) exit estimate
+        ! what a body goes that only its drag resists is no answer to forces of a path
+        where (equations%drag > 0) error = 0
         step%motion = mean_square(on_nodes(equations, outcome%du))
         step%motion_error = mean_square(on_nodes(equations, error))
         call drop_round_off(equations, solution, step)

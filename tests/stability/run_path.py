@@ -329,46 +329,39 @@ def energy(stress):
     return np.sqrt((1.3*(xx**2 + yy**2 + zz**2 + 2*xy**2) - 0.3*(xx + yy + zz)**2).sum())
 
 
+def compare(checks, title, name, deck, words, runs, shortest, exactly):
+    """Told errors of the stress at the end of runs of a deck (length of the step, cards more), against what they differ by from the run
+    in the shortest steps, with cards of its own."""
+    reference = Run(checks, f"{title}-fine", deck.format(step=shortest, more=exactly, **words))
+    if not reference.ok:
+        return
+    truth = reference.state("part", *STRESS)
+    for length, more in runs:
+        run = Run(checks, title, deck.format(step=length, more=more, **words))
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+            whole = json.load(file)
+        told, true = whole["accuracy"]["path"], 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
+        ratio = told["stress_pct"]/true
+        print(f"{name:22s} {whole['steps']:6d} {true:9.4f} {told['stress_pct']:9.4f} {ratio:11.2f}")
+        checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
+
+
 def carried(checks):
     """Errors of the stress at the end against those of short steps."""
     print(f"\n{'carried':22s} {'steps':>6s} {'error %':>9s} {'told %':>9s} {'effectivity':>11s}")
     heat = Run(checks, "heat", COOLED.format(element="PL8TM", order=" BILINEAR", law=HEAT, more="THETA  TRBDF2\n", first=0.01, step=0.25))
     cooled = {"cylinder, cools": (COOLED, {"element": "PL8LS", "order": "", "law": HOT, "first": 0.02}, 1.0)} if heat.ok else {}
     for name, (deck, words, step) in {**WAYS, **cooled}.items():
-        fine = Run(checks, "carried-fine", deck.format(step=step/16, more=OFF, **words))
-        if not fine.ok:
-            continue
-        truth = fine.state("part", *STRESS)
-        for length, more in ((step, WIDE), (step/2, WIDE), (step, "")):
-            run = Run(checks, "carried", deck.format(step=length, more=more, **words))
-            if not run.ok:
-                continue
-            with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
-                whole = json.load(file)
-            told, true = whole["accuracy"]["path"], 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
-            ratio = told["stress_pct"]/true
-            print(f"{name:22s} {whole['steps']:6d} {true:9.4f} {told['stress_pct']:9.4f} {ratio:11.2f}")
-            checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
+        compare(checks, "carried", name, deck, words, ((step, WIDE), (step/2, WIDE), (step, "")), step/16, OFF)
 
 
 def heated(checks):
     """Errors of the stress at the end, with those of temperatures and phases, against those of short steps of TR-BDF2."""
     print(f"\n{'heated':22s} {'steps':>6s} {'error %':>9s} {'told %':>9s} {'effectivity':>11s}")
     for name, (words, step) in QUENCHES.items():
-        fine = Run(checks, "heated-fine", QUENCHED.format(step=step/16, more="THETA  TRBDF2\n" + OFF, **words))
-        if not fine.ok:
-            continue
-        truth = fine.state("part", *STRESS)
-        for length, more in ((step, WIDE), (step/4, WIDE), (step, "")):
-            run = Run(checks, "heated", QUENCHED.format(step=length, more=more, **words))
-            if not run.ok:
-                continue
-            with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
-                whole = json.load(file)
-            told, true = whole["accuracy"]["path"], 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
-            ratio = told["stress_pct"]/true
-            print(f"{name:22s} {whole['steps']:6d} {true:9.4f} {told['stress_pct']:9.4f} {ratio:11.2f}")
-            checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
+        compare(checks, "heated", name, QUENCHED, words, ((step, WIDE), (step/4, WIDE), (step, "")), step/16, "THETA  TRBDF2\n" + OFF)
 
 
 def elastic(checks):
