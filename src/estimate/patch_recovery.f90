@@ -3,7 +3,7 @@
 !> Around every corner node of the mesh a complete quadratic polynomial is fitted, by least squares, to the values at the 2 x 2
 !> points of the elements that meet there. Nodes where fewer than three elements meet, on the boundary and on material lines, take
 !> the mean of the polynomials of their neighbours that have one; where there is none the patch is widened by a row. Patches whose
-!> points do not determine a quadratic get a linear polynomial. In an element the polynomials of its four corners are blended by the
+!> points do not determine a quadratic, or hardly do, as a row of elements with two points across, get a linear polynomial. In an element the polynomials of its four corners are blended by the
 !> bilinear shape functions, so that a field that is quadratic in x and y comes out exactly on elements of any shape.
 !> Sources: O.C. Zienkiewicz, J.Z. Zhu, Int. J. Num. Meth. Engng 33 (1992) 1331-1364 and 1365-1382 (patches, points); T. Blacker,
 !> T. Belytschko, Int. J. Num. Meth. Engng 37 (1994) 517-536 (blending).
@@ -27,8 +27,11 @@ module patch_recovery
                                                         6, 9, 10, 13, 14, 15], [nterm, nterm])
   !> Points of an element, and values that are recovered together: a fixed number, so that their loops are short code.
   integer, parameter :: nsample = 4, nvalue = 8
-  !> A term that keeps less than this share of itself beside the others is not distinguished from them.
-  real(wp), parameter :: dependent = 1.0e-8_wp
+  !> A term that keeps less than this share of its square beside the others is not distinguished from them: one of the first degree
+  !> by round-off, one of the second where it is told from them by the shapes of elements that hardly differ. The coefficient of such
+  !> a term would be the errors of the values, a few dozen times. Patches with shares above a third have none of these; of the others
+  !> some are merely long and lie aslant.
+  real(wp), parameter :: dependent = 1.0e-8_wp, hardly = 1.0e-3_wp, suspect = 1.0e-2_wp
 
   !> A polynomial for every vertex: coefficients (nvalue, nterm, nvertex) in (x - node)/scale.
   type :: polynomials_t
@@ -90,7 +93,7 @@ contains
           end do
           right(:, j) = sums
         end do
-        call solve_normal(gram, right)
+        call solve_normal(points(:nsample*size(mine), 2:3), gram, right)
         polynomials%coefficient(:, :, v) = right
       end associate
     end do
@@ -101,12 +104,15 @@ contains
 
   !> Solve for the coefficients, in place, by Cholesky's factors (their diagonal inverted); of a lower degree where the points do
   !> not determine one.
-  pure subroutine solve_normal(gram, right)
+  pure subroutine solve_normal(points, gram, right)
+    real(wp), intent(in) :: points(:, :)   !! (npoint, 2) of the patch [scale]
     real(wp), intent(inout) :: gram(nterm, nterm), right(nvalue, nterm)
     real(wp) :: diagonal
     integer :: i, j, degree_end
+    logical :: checked
 
     degree_end = nterm
+    checked = .false.
     do j = 1, nterm
       diagonal = gram(j, j)
       do i = 1, j - 1
@@ -115,6 +121,13 @@ contains
       if (.not. gram(j, j) > dependent*diagonal) then
         degree_end = merge(3, 1, j > 3)
         exit
+      end if
+      if (j > 3 .and. .not. checked .and. gram(j, j) < suspect*diagonal) then
+        if (.not. determine_quadratic(points)) then
+          degree_end = 3
+          exit
+        end if
+        checked = .true.
       end if
       gram(j, j) = 1/sqrt(gram(j, j))
       do i = j + 1, nterm
@@ -135,6 +148,41 @@ contains
     end do
     right(:, degree_end + 1:) = 0
   end subroutine solve_normal
+
+  !> Points determine a quadratic polynomial: each term of the second degree keeps a share of itself beside those before it, in
+  !> coordinates in which the points scatter by 1 in every direction, so that it is no matter how long a patch is and how it lies.
+  pure function determine_quadratic(points) result(yes)
+    real(wp), intent(in) :: points(:, :)   !! (npoint, 2) that do not lie on a line [scale]
+    logical :: yes
+    real(wp) :: mean(2), spread_of(2), slope, gram(nterm, nterm), t(nterm), diagonal
+    integer :: i, j, k
+
+    mean = sum(points, 1)/size(points, 1)
+    spread_of(1) = sqrt(sum((points(:, 1) - mean(1))**2)/size(points, 1))
+    slope = sum((points(:, 1) - mean(1))*(points(:, 2) - mean(2)))/(size(points, 1)*spread_of(1)**2)
+    spread_of(2) = sqrt(sum((points(:, 2) - mean(2) - slope*(points(:, 1) - mean(1)))**2)/size(points, 1))
+    gram = 0
+    do k = 1, size(points, 1)
+      t(:2) = points(k, :) - mean
+      t = terms([t(1)/spread_of(1), (t(2) - slope*t(1))/spread_of(2)])
+      do j = 1, nterm
+        gram(:, j) = gram(:, j) + t*t(j)
+      end do
+    end do
+    yes = .true.
+    do j = 1, nterm
+      diagonal = gram(j, j)
+      do i = 1, j - 1
+        gram(j, j) = gram(j, j) - gram(j, i)**2
+      end do
+      yes = gram(j, j) > hardly*diagonal
+      if (.not. yes) return
+      gram(j, j) = sqrt(gram(j, j))
+      do i = j + 1, nterm
+        gram(i, j) = (gram(i, j) - dot_product(gram(i, :j - 1), gram(j, :j - 1)))/gram(j, j)
+      end do
+    end do
+  end function determine_quadratic
 
   !> The mean of the donors' polynomials, moved to the position and scale of this vertex.
   pure subroutine take_mean(patches, v, polynomials)
