@@ -3,8 +3,9 @@
 !> Around every corner node of the mesh a complete quadratic polynomial is fitted, by least squares, to the values at the 2 x 2
 !> points of the elements that meet there. Nodes where fewer than three elements meet, on the boundary and on material lines, take
 !> the mean of the polynomials of their neighbours that have one; where there is none the patch is widened by a row. Patches whose
-!> points do not determine a quadratic, or hardly do, as a row of elements with two points across, get a linear polynomial. In an element the polynomials of its four corners are blended by the
-!> bilinear shape functions, so that a field that is quadratic in x and y comes out exactly on elements of any shape.
+!> points do not determine a quadratic, or hardly do, as a row of elements with two points across, get a linear polynomial. In an
+!> element the polynomials of its four corners are blended by the bilinear shape functions, so that a field that is quadratic in x
+!> and y comes out exactly on elements of any shape.
 !> Sources: O.C. Zienkiewicz, J.Z. Zhu, Int. J. Num. Meth. Engng 33 (1992) 1331-1364 and 1365-1382 (patches, points); T. Blacker,
 !> T. Belytschko, Int. J. Num. Meth. Engng 37 (1994) 517-536 (blending).
 module patch_recovery
@@ -27,10 +28,10 @@ module patch_recovery
                                                         6, 9, 10, 13, 14, 15], [nterm, nterm])
   !> Points of an element, and values that are recovered together: a fixed number, so that their loops are short code.
   integer, parameter :: nsample = 4, nvalue = 8
-  !> A term that keeps less than this share of its square beside the others is not distinguished from them: one of the first degree
-  !> by round-off, one of the second where it is told from them by the shapes of elements that hardly differ. The coefficient of such
-  !> a term would be the errors of the values, a few dozen times. Patches with shares above a third have none of these; of the others
-  !> some are merely long and lie aslant.
+  !> A term that keeps less than this share of its square beside the others is not distinguished from them: `dependent` by
+  !> round-off, `hardly` where those of the second degree are told from the others by how elements differ from rectangles. Their
+  !> coefficients would be the errors of the values a few dozen times. Patches below `suspect` are looked at: some are merely long
+  !> and lie aslant.
   real(wp), parameter :: dependent = 1.0e-8_wp, hardly = 1.0e-3_wp, suspect = 1.0e-2_wp
 
   !> A polynomial for every vertex: coefficients (nvalue, nterm, nvertex) in (x - node)/scale.
