@@ -16,7 +16,7 @@ module contour_needs
   public :: geometry_settings_t, needs_of_boundary, needs_of_die
 
   type :: geometry_settings_t
-    !> Angle an element may turn by [radian].
+    !> Angle an element may turn by; one at a bend of a die by half of it [radian].
     real(wp) :: turn = 0.26_wp
     !> Elements across a contact interval, 0: no requirement.
     integer :: across = 0
@@ -24,6 +24,9 @@ module contour_needs
 
   !> Parts of an arc that are sampled, more of one that is longer than as many of the largest elements, up to a limit.
   integer, parameter :: parts = 4, most_parts = 400
+  !> Of the angle an element may turn by at a bend of a die. A free side is straight between its ends at worst; one that has left a
+  !> bend keeps the shape it had to take there, and is longer.
+  real(wp), parameter :: turn_at_die = 0.5_wp
   !> A vertex of a die that turns by more is a corner, not one of a polygon that follows a curve: 30 degrees [radian].
   real(wp), parameter :: sharp = 0.52_wp
 
@@ -65,6 +68,7 @@ contains
       end associate
       i = i + number(k) + 1
     end do
+    all%size = max(all%size, limits%smallest)
     if (present(nearby)) then
       do i = 1, size(all)
         do k = 1, size(nearby)
@@ -77,7 +81,7 @@ contains
   end subroutine needs_of_boundary
 
   !> Size requirements of the curvature of a die, and of its sharp corners that point to the part, where matter turns on the spot:
-  !> the smallest size there. They apply where a contour is near, since sizes grow with distance.
+  !> the smallest size there, while bends have their own. They apply where a contour is near, since sizes grow with distance.
   pure subroutine needs_of_die(pieces, closed, settings, limits, needs)
     type(arc_t), intent(in) :: pieces(:)   !! (npiece) in the present position of the die
     logical, intent(in) :: closed          !! the last piece ends where the first one begins
@@ -85,12 +89,16 @@ contains
     type(size_limits_t), intent(in) :: limits
     type(need_t), allocatable, intent(out) :: needs(:)   !! (nneed)
     type(need_t) :: all((parts + 1)*size(pieces))
+    type(geometry_settings_t) :: at_die
     integer :: k, n, next
 
+    at_die = settings
+    at_die%turn = turn_at_die*settings%turn
     n = parts*size(pieces)
     do k = 1, size(pieces)
-      call needs_of_arc(pieces(k), settings, limits, all(parts*(k - 1) + 1:parts*k))
+      call needs_of_arc(pieces(k), at_die, limits, all(parts*(k - 1) + 1:parts*k))
     end do
+    all(:n)%size = max(all(:n)%size, min(limits%smallest, limits%at_bends))
     do k = 1, merge(size(pieces), size(pieces) - 1, closed)
       next = mod(k, size(pieces)) + 1
       if (turn_between(tangent_at(pieces(k), 1.0_wp), tangent_at(pieces(next), -1.0_wp)) > -sharp) cycle
@@ -121,7 +129,6 @@ contains
       if (.not. all(i)%size < limits%largest) cycle
       n = n + 1
       needs(n) = all(i)
-      needs(n)%size = max(needs(n)%size, limits%smallest)
     end do
   end subroutine keep_needs
 

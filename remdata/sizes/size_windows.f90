@@ -14,6 +14,8 @@ module size_windows
   type :: size_limits_t
     real(wp) :: smallest = 0.0_wp              !! [length]
     real(wp) :: largest = sqrt(huge(1.0_wp))   !! [length]
+    !> Smallest where a die bends, if that is smaller [length].
+    real(wp) :: at_bends = sqrt(huge(1.0_wp))
     !> Largest ratio of an element to its neighbour.
     real(wp) :: gradation = 1.5_wp
   end type size_limits_t
@@ -50,6 +52,7 @@ contains
     wide = limits
     do k = 1, size(windows)
       wide%smallest = min(wide%smallest, windows(k)%box%smallest)
+      wide%at_bends = min(wide%at_bends, windows(k)%box%smallest)
       wide%largest = max(wide%largest, windows(k)%box%largest)
     end do
   end function limits_around
@@ -70,6 +73,7 @@ contains
       if (distance_to(windows(k), x, origin) > 0) cycle
       if (inside .and. own%largest <= windows(k)%box%largest) cycle
       own%smallest = windows(k)%box%smallest
+      own%at_bends = windows(k)%box%smallest
       own%largest = windows(k)%box%largest
       inside = .true.
     end do

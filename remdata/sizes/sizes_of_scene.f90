@@ -50,7 +50,10 @@ contains
     logical :: shown
     integer :: e, c
 
-    if (scene%remesher%smallest > 0) limits%smallest = scene%remesher%smallest
+    if (scene%remesher%smallest > 0) then
+      limits%smallest = scene%remesher%smallest
+      limits%at_bends = scene%remesher%smallest_at_bends
+    end if
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
     call place_windows(scene, solution, windows)
     longer = limits

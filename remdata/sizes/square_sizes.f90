@@ -2,7 +2,8 @@
 !>
 !> On the old mesh: from the error of each of its elements, h (limit/error)^(1/p), as values at its corners; around points
 !> with a size requirement (a bend of the contour, contact): the required size, growing with the distance. Limited by the smallest
-!> and largest size, those of its window for a point in one, and from one element to the next by the gradation.
+!> and largest size, those of its window for a point in one, and from one element to the next by the gradation. Where a die bends
+!> the smallest size is another.
 module square_sizes
   use box_tree, only: box_tree_t, build_tree, nearest_items
   use graded_sizes, only: grade, slope_of
@@ -122,12 +123,16 @@ contains
     real(wp), intent(in) :: x(2)   !! [length]
     real(wp) :: h
     real(wp) :: origin(2), on_mesh
+    type(size_limits_t) :: limits
 
     h = size_by_needs(field, x)
     call look_up(field, material, x, origin, on_mesh)
     h = min(h, on_mesh)
     h = min(h, size_by_windows(field%limits, field%windows, x, origin))
-    h = within(limits_at(field, x, origin), h)
+    limits = limits_at(field, x, origin)
+    ! what is smaller than the smallest size here comes from a need at a bend, on the mesh as by itself
+    limits%smallest = min(limits%smallest, limits%at_bends)
+    h = within(limits, h)
   end function size_at
 
   !> A point of a material is in a window.

@@ -1,6 +1,7 @@
 !> Lines of a scene's summary on remeshing: limits at which a new mesh is due, and what it will be.
 module remesh_summary
   use kinds, only: wp
+  use remesher_options, only: remesher_options_t
   use remesher_windows, only: window_text
   use remeshing, only: criterion_names, has_limit, is_upper, ncriteria, never
   use scene, only: scene_t
@@ -69,12 +70,22 @@ contains
 
     associate (wish => scene%remesher)
       call add_text(lines, 'new mesh   elements of '//to_text(wish%smallest, 4)//' to '//to_text(wish%largest, 4) &
-                    //most_text(wish%most_elements)//', error of the strain '//to_text(100*wish%strain_error)//' %')
+                    //most_text(wish%most_elements)//bends_text(wish)//', error of the strain '//to_text(100*wish%strain_error) &
+                    //' %')
       do k = 1, size(wish%windows)
         call add_text(lines, 'window     '//window_text(wish%windows(k), name_of_die(scene, wish%windows(k)%die)))
       end do
     end associate
   end subroutine add_new_mesh
+
+  !> The smallest size where dies bend, if that is another.
+  pure function bends_text(wish) result(text)
+    type(remesher_options_t), intent(in) :: wish
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (wish%smallest_at_bends < wish%smallest) text = ', from '//to_text(wish%smallest_at_bends, 4)//' where dies bend'
+  end function bends_text
 
   subroutine add_limit(lines, name, limit)
     type(string_t), allocatable, intent(inout) :: lines(:)

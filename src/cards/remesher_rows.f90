@@ -8,6 +8,7 @@ module remesher_rows
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
   use mesh_parts, only: mesh_parts_t
+  use remesh_defaults, only: share_at_bends
   use remeshing, only: never, remesh_rules_t
   use remesher_options, only: by_free, by_gmsh, has_zones, own_mesh_t, remesher_options_t
   use scene_draft, only: words_of
@@ -170,6 +171,7 @@ contains
 
     options%smallest = options%smallest/factor
     options%largest = options%largest/factor
+    options%smallest_at_bends = options%smallest_at_bends/factor
     options%most_elements = nint(options%most_elements*factor**2)
     options%windows%smallest = options%windows%smallest/factor
     options%windows%largest = options%windows%largest/factor
@@ -179,7 +181,7 @@ contains
     if (rules%stress_error < never) rules%stress_error = rules%stress_error/factor
   end subroutine make_sizes_finer
 
-  !> What was not given is taken from the deck's own mesh.
+  !> What was not given is taken from the deck's own mesh. A smallest size that is given holds at bends of dies too.
   pure subroutine complete_options(options)
     type(remesher_options_t), intent(inout) :: options
 
@@ -187,7 +189,9 @@ contains
       if (.not. options%largest > 0) then
         options%smallest = smallest_share*own%smallest
         options%largest = largest_share*own%largest
+        options%smallest_at_bends = share_at_bends*options%smallest
       end if
+      if (.not. options%smallest_at_bends > 0) options%smallest_at_bends = options%smallest
       if (options%most_elements == 0) options%most_elements = growth*own%elements
     end associate
   end subroutine complete_options

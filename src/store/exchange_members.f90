@@ -72,6 +72,7 @@ contains
     integer :: k
 
     call require(file, 'remesher/smallest', options%smallest <= options%largest, 'is above remesher/largest')
+    call require(file, 'remesher/smallest_at_bends', options%smallest_at_bends <= options%smallest, 'is above remesher/smallest')
     do k = 1, size(options%windows)
       place = 'remesher/windows/'//to_text(k)
       call require(file, place//'/low', all(options%windows(k)%low < options%windows(k)%high), 'is not below '//place//'/high')

@@ -182,6 +182,7 @@ contains
         options%exponent = 3.0_wp
         options%neighbours = 20
         options%smallest = 0.1_wp
+        options%smallest_at_bends = 0.05_wp
         options%largest = 0.7_wp
         options%strain_error = 0.06_wp
         options%most_elements = 77
