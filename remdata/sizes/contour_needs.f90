@@ -16,17 +16,14 @@ module contour_needs
   public :: geometry_settings_t, needs_of_boundary, needs_of_die
 
   type :: geometry_settings_t
-    !> Angle an element may turn by; one at a bend of a die by half of it [radian].
-    real(wp) :: turn = 0.26_wp
+    !> Angle an element may turn by, and at a bend of a die [radian].
+    real(wp) :: turn = 0.26_wp, turn_at_dies = 0.26_wp
     !> Elements across a contact interval, 0: no requirement.
     integer :: across = 0
   end type geometry_settings_t
 
   !> Parts of an arc that are sampled, more of one that is longer than as many of the largest elements, up to a limit.
   integer, parameter :: parts = 4, most_parts = 400
-  !> Of the angle an element may turn by at a bend of a die. A free side is straight between its ends at worst; one that has left a
-  !> bend keeps the shape it had to take there, and is longer.
-  real(wp), parameter :: turn_at_die = 0.5_wp
   !> A vertex of a die that turns by more is a corner, not one of a polygon that follows a curve: 30 degrees [radian].
   real(wp), parameter :: sharp = 0.52_wp
 
@@ -68,15 +65,13 @@ contains
       end associate
       i = i + number(k) + 1
     end do
-    all%size = max(all%size, limits%smallest)
-    if (present(nearby)) then
-      do i = 1, size(all)
-        do k = 1, size(nearby)
-          call limit_next(slope_of(limits%gradation), nearby(k), all(i))
-        end do
-      end do
-    end if
+    if (present(nearby)) call limit_by(slope_of(limits%gradation), nearby, limits%smallest, all)
     call grade_along(slope_of(limits%gradation), all)
+    all%size = max(all%size, limits%smallest)
+    if (present(nearby) .and. limits%at_bends < limits%smallest) then
+      call limit_by(slope_of(limits%gradation), nearby, limits%at_bends, all)
+      call grade_along(slope_of(limits%gradation), all)
+    end if
     call keep_needs(limits, all, needs)
   end subroutine needs_of_boundary
 
@@ -93,7 +88,7 @@ contains
     integer :: k, n, next
 
     at_die = settings
-    at_die%turn = turn_at_die*settings%turn
+    at_die%turn = settings%turn_at_dies
     n = parts*size(pieces)
     do k = 1, size(pieces)
       call needs_of_arc(pieces(k), at_die, limits, all(parts*(k - 1) + 1:parts*k))
@@ -233,6 +228,24 @@ contains
       call limit_next(slope, needs(mod(i, n) + 1), needs(mod(i - 1, n) + 1))
     end do
   end subroutine grade_along
+
+  !> Limit requirements by others, which are taken for no smaller than `least`.
+  pure subroutine limit_by(slope, others, least, needs)
+    real(wp), intent(in) :: slope
+    type(need_t), intent(in) :: others(:)
+    real(wp), intent(in) :: least   !! [length]
+    type(need_t), intent(inout) :: needs(:)
+    type(need_t) :: other
+    integer :: i, k
+
+    do k = 1, size(others)
+      other = others(k)
+      other%size = max(other%size, least)
+      do i = 1, size(needs)
+        call limit_next(slope, other, needs(i))
+      end do
+    end do
+  end subroutine limit_by
 
   !> Limit a requirement by that of its neighbour. It then holds only within the distance at which the limit reaches its old value.
   pure subroutine limit_next(slope, one, next)

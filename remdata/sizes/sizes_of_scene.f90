@@ -144,6 +144,7 @@ contains
 
     settings%across = scene%remesher%across_contact
     settings%turn = scene%remesher%turn
+    settings%turn_at_dies = scene%remesher%turn_at_dies
     allocate (needs(0), bends(0))
     do d = 1, size(scene%dies)
       if (is_deformable(scene%dies(d))) cycle

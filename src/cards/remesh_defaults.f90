@@ -8,7 +8,7 @@ module remesh_defaults
   use vectors, only: length_of
   implicit none
   private
-  public :: elements_at_first, area_in, narrow, set_default_limits, set_default_sizes, share_at_bends
+  public :: elements_at_first, area_in, narrow, set_default_limits, set_default_sizes
 
   !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
   !> (angles from 20 degrees, scaled Jacobians from 0.25, middle nodes in the middle third), and each is some steps of distortion
@@ -30,10 +30,6 @@ module remesh_defaults
   integer, parameter :: elements_at_first = 150, elements_across = 4
   !> The smallest element over the largest, and elements of later meshes over those of the first.
   real(wp), parameter :: smallest_share = 0.2_wp
-  !> The smallest element where a die bends over the smallest elsewhere. What errors ask for ends at the smallest size; a bend of
-  !> small radius that sides do not follow shapes the part otherwise than the die does, and what leaves it may not touch the die any
-  !> more.
-  real(wp), parameter :: share_at_bends = 0.3_wp
   integer, parameter :: growth = 3
 
 contains
@@ -75,7 +71,6 @@ contains
     size_of = min(size_of, sqrt(all/elements_at_first))
     options%largest = size_of
     options%smallest = smallest_share*size_of
-    options%smallest_at_bends = share_at_bends*options%smallest
     if (options%most_elements == 0) options%most_elements = growth*ceiling(all/size_of**2)
   end subroutine set_default_sizes
 

@@ -8,7 +8,6 @@ module remesher_rows
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
   use mesh_parts, only: mesh_parts_t
-  use remesh_defaults, only: share_at_bends
   use remeshing, only: never, remesh_rules_t
   use remesher_options, only: by_free, by_gmsh, has_zones, own_mesh_t, remesher_options_t
   use scene_draft, only: words_of
@@ -31,6 +30,10 @@ module remesher_rows
   real(wp), parameter :: largest_stretch = 5.0_wp
   !> Smallest and largest elements over those of the deck's own mesh, and how many times as many elements there may be.
   real(wp), parameter :: smallest_share = 0.4_wp, largest_share = 2.5_wp
+  !> The smallest element where a die bends over the smallest elsewhere, and the angle by which sides turn there over that elsewhere.
+  !> A bend of small radius that sides do not follow shapes the part otherwise than the die does, and what leaves it may not touch
+  !> the die any more.
+  real(wp), parameter :: share_at_bends = 0.4_wp, turn_at_bends = 0.5_wp
   integer, parameter :: growth = 3
 
 contains
@@ -56,6 +59,7 @@ contains
       call cursor%real('the angle a side of an element may turn by', degrees, lower=0.0_wp, upper=90.0_wp, &
                        strict_lower=.true., unit='degrees')
       options%turn = degrees*pi/180
+      options%turn_at_dies = options%turn
     case ('STRETCH')
       call cursor%real('the largest ratio of length to width of an element', options%stretch, lower=1.0_wp, upper=largest_stretch)
     case ('TRANSFER')
@@ -178,6 +182,7 @@ contains
     options%strain_error = options%strain_error/factor**2
     options%across_contact = nint(options%across_contact*factor)
     options%turn = options%turn/factor
+    options%turn_at_dies = options%turn_at_dies/factor
     if (rules%stress_error < never) rules%stress_error = rules%stress_error/factor
   end subroutine make_sizes_finer
 
@@ -190,6 +195,7 @@ contains
         options%smallest = smallest_share*own%smallest
         options%largest = largest_share*own%largest
         options%smallest_at_bends = share_at_bends*options%smallest
+        options%turn_at_dies = min(options%turn_at_dies, turn_at_bends*options%turn)
       end if
       if (.not. options%smallest_at_bends > 0) options%smallest_at_bends = options%smallest
       if (options%most_elements == 0) options%most_elements = growth*own%elements

@@ -40,9 +40,10 @@ module remesher_options
     real(wp) :: stretch = default_stretch
     !> Sizes in windows; empty without any.
     type(mesh_window_t), allocatable :: windows(:)
-    !> Elements across a contact interval (0: as they come), angle a side of an element may turn by [radian].
+    !> Elements across a contact interval (0: as they come), angle a side of an element may turn by, and at a bend of a die
+    !> [radian].
     integer :: across_contact = 4
-    real(wp) :: turn = pi/12
+    real(wp) :: turn = pi/12, turn_at_dies = pi/12
     !> Mesher.
     integer :: mesher = as_it_comes
     !> When a mesh is refused, and other ways tried then.

@@ -38,6 +38,7 @@ contains
     call visitor%member('most_elements', self%most_elements, kept, low=0)
     call visitor%member('across_contact', self%across_contact, kept, low=0)
     call visitor%member('turn', self%turn, kept, 'radian', low=tiny(1.0_wp), high=pi/2)
+    call visitor%member('turn_at_dies', self%turn_at_dies, kept, 'radian', low=tiny(1.0_wp), high=pi/2)
     call visitor%member('stretch', self%stretch, kept, '-', low=1.0_wp)
     call visitor%member('mesher', self%mesher, kept, low=0, high=by_free)
     call visitor%member('tries', self%tries, kept, low=0)
