@@ -30,9 +30,9 @@ module remesher_rows
   real(wp), parameter :: largest_stretch = 5.0_wp
   !> Smallest and largest elements over those of the deck's own mesh, and how many times as many elements there may be.
   real(wp), parameter :: smallest_share = 0.4_wp, largest_share = 2.5_wp
-  !> The smallest element where a die bends over the smallest elsewhere, and the angle by which sides turn there over that elsewhere.
-  !> A bend of small radius that sides do not follow shapes the part otherwise than the die does, and what leaves it may not touch
-  !> the die any more.
+  !> The smallest element where a die bends over the smallest elsewhere, and the angle by which sides turn there over that
+  !> elsewhere. A bend of small radius that sides do not follow shapes the part otherwise than the die does, and what leaves it may
+  !> not touch the die any more.
   real(wp), parameter :: share_at_bends = 0.4_wp, turn_at_bends = 0.5_wp
   integer, parameter :: growth = 3
 
