@@ -64,6 +64,7 @@ contains
     type(corner_t), intent(in) :: corner
     real(wp) :: state(contact_block(.true., size(committed, 1)))
     type(corner_t) :: start
+    logical :: known
     integer :: q, n
 
     n = size(state)
@@ -77,11 +78,14 @@ contains
         return
       end associate
     end do
-    if (nint(state(at_piece)) == 0 .or. is_of(state, corner)) return
+    if (is_of(state, corner)) return
+    known = nint(state(at_piece)) /= 0
     state([at_pressure, at_tau, at_penetration, at_status, at_augmentation, at_piece, at_xi, at_between, at_energy]) = 0
     call corner_within(die, corner%number, nodes_in_axes(side_at_start(side)), -1.0_wp, 1.0_wp, side%length, 0.0_wp, start)
     if (.not. start%found) return
-    state([at_penetration, at_piece, at_xi]) = [start%d, real(corner%piece, wp), corner%xi]
+    state(at_penetration) = start%d
+    if (.not. known) return
+    state([at_piece, at_xi]) = [real(corner%piece, wp), corner%xi]
     if (.not. start%d > free_depth(material, side)) return
     state([at_pressure, at_status]) = [side%penalty(1)*(start%d - free_depth(material, side)), real(contact_slip, wp)]
   end function corner_at_start

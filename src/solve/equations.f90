@@ -78,6 +78,8 @@ module equations
     real(wp) :: more_drag = 1.0_wp
     !> Components of pilots that friction alone holds, and whose points all slide, in the last correction (3, ndie).
     logical, allocatable :: slides(:, :)
+    !> Forces on dies that the present step started just in touch with the part, 0 for others (ndie; seating).
+    real(wp), allocatable :: seated(:)
     type(ledger_t) :: timers
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
