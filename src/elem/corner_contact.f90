@@ -105,7 +105,7 @@ contains
     if (.not. corner%found) return
     call keep_corner(die, material, side, nodes, from, to, committed(n + 1:2*n, p), corner)
     trial(at_place) = corner%place
-    before = corner_at_start(die, material, side, committed, p, corner)
+    before = corner_at_start(die, material, side, committed, p, corner, first=.true.)
     associate (now => trial(n + 1:2*n))
       worn = thinning(committed(at_place:at_place, p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
       now(at_work) = before(at_work)*worn(1)
@@ -119,7 +119,7 @@ contains
       if (k == corner%number) cycle
       call corner_within(die, k, nodes, from, to, side%length, 0.0_wp, other)
       if (.not. other%found) cycle
-      before = corner_at_start(die, material, side, committed, p, other)
+      before = corner_at_start(die, material, side, committed, p, other, first=.false.)
       before(at_work) = 0
       call press_another(law, material, drivers, axisym, side, other, to - from, before, corner%place, trial(n + 1:2*n), force, &
                          stiffness, report)

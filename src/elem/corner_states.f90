@@ -54,14 +54,15 @@ contains
 
   !> State of a corner in the interval before a point as the step began: what it was there where it was in contact, in this
   !> interval or in one beside, but its work, which stays where it was done. What the interval keeps of another corner is not of
-  !> this one.
-  pure function corner_at_start(die, material, side, committed, p, corner) result(state)
+  !> this one, but for the multiplier, which an augmentation within the step may have given to the one that has the state.
+  pure function corner_at_start(die, material, side, committed, p, corner, first) result(state)
     type(die_t), intent(in) :: die
     type(material_t), intent(in) :: material
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: committed(:, :)   !! (nstate, npoint) [unit of each component]
     integer, intent(in) :: p
     type(corner_t), intent(in) :: corner
+    logical, intent(in) :: first              !! it is the one that has the state of the interval
     real(wp) :: state(contact_block(.true., size(committed, 1)))
     type(corner_t) :: start
     logical :: known
@@ -80,7 +81,8 @@ contains
     end do
     if (is_of(state, corner)) return
     known = nint(state(at_piece)) /= 0
-    state([at_pressure, at_tau, at_penetration, at_status, at_augmentation, at_piece, at_xi, at_between, at_energy]) = 0
+    state([at_pressure, at_tau, at_penetration, at_status, at_piece, at_xi, at_between, at_energy]) = 0
+    if (.not. first) state(at_augmentation) = 0
     call corner_within(die, corner%number, nodes_in_axes(side_at_start(side)), -1.0_wp, 1.0_wp, side%length, 0.0_wp, start)
     if (.not. start%found) return
     state(at_penetration) = start%d

@@ -2,8 +2,8 @@
 !> a part comes from farther off than contact is looked for.
 !>
 !> Of the slip of a step in which contact begins only the share counts that is made in contact (contact_point), and that follows
-!> from the gap there was. Without it a die that comes down on a part along its normal would rub it by all of its way, times the tilt
-!> of the die there: enough for all of its friction, in a direction that changes sign where two pieces of the die meet.
+!> from the gap there was. Without it a die that comes down on a part along its normal would rub it by all of its way, times the
+!> tilt of the die there: enough for all of its friction, in a direction that changes sign where two pieces of the die meet.
 module start_depths
   use closest_point, only: closest_point_t
   use contact_point, only: at_penetration, at_piece, at_status
