@@ -90,6 +90,8 @@ module equations
     real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp
     !> Viscous force over velocity of the unknowns in a step that is damped (ndof); not allocated in others (damping).
     real(wp), allocatable :: damping(:)
+    !> Motion in such a step that meets no viscous force (ndof).
+    real(wp), allocatable :: carried(:)
     !> Weights of the quantities in norms over several of them (convergence).
     real(wp), allocatable :: weight(:)
     !> Nodes of the solid elements, and the pairs that unknowns and pattern are of.
