@@ -15,7 +15,7 @@ module corner_states
   use side_corners, only: corner_t, corner_within
   implicit none
   private
-  public :: bears, corner_at_start, corner_share, free_depth, keep_corner
+  public :: bears, corner_at_start, corner_before, corner_share, free_depth, keep_corner
 
   !> A corner acts on what is deeper than this share of the allowed penetration.
   real(wp), parameter :: corner_share = 0.5_wp
@@ -91,6 +91,35 @@ contains
     if (.not. start%d > free_depth(material, side)) return
     state([at_pressure, at_status]) = [side%penalty(1)*(start%d - free_depth(material, side)), real(contact_slip, wp)]
   end function corner_at_start
+
+  !> State that the corner of the interval before a point had one step before, in this interval or in one beside; without contact
+  !> where it had none.
+  pure function corner_before(before, now, p) result(state)
+    real(wp), intent(in) :: before(:, :), now(:, :)   !! (nstate, npoint) [unit of each component]
+    integer, intent(in) :: p
+    real(wp) :: state(contact_block(.true., size(before, 1)))
+    integer :: q, n
+
+    n = size(state)
+    state = before(n + 1:2*n, p)
+    if (nint(state(at_status)) /= contact_open .and. is_same(state)) return
+    do q = max(1, p - 1), min(size(before, 2), p + 1)
+      if (nint(before(n + at_status, q)) == contact_open .or. .not. is_same(before(n + 1:2*n, q))) cycle
+      state = before(n + 1:2*n, q)
+      return
+    end do
+    if (.not. is_same(state)) state([at_pressure, at_tau, at_status, at_between, at_energy]) = 0
+
+  contains
+
+    !> A state is that of the corner now.
+    pure function is_same(one) result(yes)
+      real(wp), intent(in) :: one(:)   !! (nstate) [unit of each component]
+      logical :: yes
+
+      yes = nint(one(at_piece)) == nint(now(n + at_piece, p)) .and. .not. one(at_xi)*now(n + at_xi, p) < 0
+    end function is_same
+  end function corner_before
 
   !> A corner bears: it is deeper than it needs for no pressure. What is kept in contact answers to the depth at the start of the
   !> step (contact_point).
