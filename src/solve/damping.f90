@@ -161,14 +161,15 @@ contains
     solution%damping_bound = solution%work%damping + solution%work%elastic
   end subroutine begin_damping
 
-  !> The body whose moved supports bear the largest force, and that; '' and 0 where none moves.
+  !> The body whose moved supports bear the largest force as they drive it on, and that; '' and 0 where none does. One that is taken
+  !> back lets go without a snap.
   subroutine find_moved_body(scene, equations, motion, largest, name)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations   !! with the forces of now
     real(wp), intent(in) :: motion(:)            !! (ndof) of supports [unknown]
     real(wp), intent(out) :: largest             !! [force]
     character(len=:), allocatable, intent(out) :: name
-    real(wp) :: force(2)
+    real(wp) :: force(2), power
     integer :: g, c
     logical :: node(size(scene%mesh%coordinates, 2))
 
@@ -179,10 +180,15 @@ contains
       node = .false.
       node(reshape(scene%groups(g)%connectivity, [size(scene%groups(g)%connectivity)])) = .true.
       associate (number => equations%dofs%fields(displacement_field)%number)
+        power = 0
         do c = 1, 2
-          force(c) = sum(equations%force(pack(number(c, :), moved(number(c, :)))))
+          associate (d => pack(number(c, :), moved(number(c, :))))
+            force(c) = sum(equations%force(d))
+            power = power + dot_product(equations%force(d), motion(d))
+          end associate
         end do
       end associate
+      if (.not. power > 0) cycle
       if (.not. length_of(force) > largest) cycle
       largest = length_of(force)
       name = scene%groups(g)%name
