@@ -89,6 +89,7 @@ contains
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
     logical :: past_limit, withdraws
+    character(len=:), allocatable :: name
     integer :: die
 
     if (solution%damping > 0) then
@@ -98,10 +99,10 @@ contains
     ! in the first step a part may begin deep in its dies, and nothing has been found yet that it could snap from; on a new mesh the
     ! fault may be the mesh's
     past_limit = solution%last_step > 0 .and. .not. on_probation .and. any(outcome%history%past_limit)
-    call begin_damping(scene, run%equations, solution, dt, past_limit, die, withdraws)
-    if (die == 0) return
+    call begin_damping(scene, run%equations, solution, dt, past_limit, die, withdraws, name)
+    if (name == '') return
     run%damped_from = solution%step + 1
-    call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//scene%dies(die)%name &
+    call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//name &
                    //trim(merge(' withdraws, and               ', ' moves past a limit point, and', withdraws))//' no ' &
                    //'equilibrium is near: what it held is let go suddenly; steps are damped until there is one')
   end subroutine damp

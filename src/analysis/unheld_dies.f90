@@ -26,6 +26,8 @@ module unheld_dies
     integer :: die = 0, component = 0
     !> Points of contact that touched it at the start of the step, and in the attempt.
     integer :: before = 0, now = 0
+    !> Its force takes it to the part in the step (seating).
+    logical :: seated = .false.
   end type unheld_die_t
 
 contains
@@ -51,7 +53,7 @@ contains
     do k = 1, size(scene%die_forces)
       associate (load => scene%die_forces(k))
         if (.not. unresisted(load%component, load%die)) cycle
-        unheld = unheld_die_t(load%die, load%component, before(load%die), now(load%die))
+        unheld = unheld_die_t(load%die, load%component, before(load%die), now(load%die), equations%seated(load%die) > 0)
         return
       end associate
     end do
@@ -67,7 +69,10 @@ contains
     words = ''
     if (unheld%die == 0) return
     words = 'die '//scene%dies(unheld%die)%name//' is free '//trim(names(unheld%component))
-    if (unheld%before == 0 .and. unheld%now == 0) then
+    if (unheld%before == 0 .and. unheld%now == 0 .and. unheld%seated) then
+      words = words//', and where its force takes it to the part nothing holds it: it slips or rolls off what it touches first; ' &
+              //'a SPRNG card holds it where no force pushes it'
+    else if (unheld%before == 0 .and. unheld%now == 0) then
       words = words//' and touches nothing, nor does a force push it to a side that faces it: a SPRNG card holds it until it ' &
               //'does'
     else if (unheld%now > 0) then

@@ -32,7 +32,8 @@ module contact_between
   use law_api, only: contact_open, law_t
   use materials, only: material_t
   use quadrature, only: rule_t
-  use rigid_contact, only: motion_of_depth, ndof, nodes_in_axes, place_point, press, side_at_start, side_t
+  use rigid_contact, only: motion_of_depth, ndof, nodes_in_axes, place_point, press, side_t
+  use start_depths, only: find_depth_at_start
   implicit none
   private
   public :: press_between
@@ -104,7 +105,7 @@ contains
         drive(p, :) = matmul(drivers(p, :, :), hats)
       end do
       before = 0
-      before(at_penetration) = depth_at_start(die, side_at_start(side), place)
+      before(at_penetration) = find_depth_at_start(die, side, place)
       report%between = .true.
       report%jump = max(report%jump, abs(closest%d - max(free, before(at_penetration)))/side%length)
       ! what was in contact at another place slides all the way
@@ -169,19 +170,6 @@ contains
       state(at_work, p) = state(at_work, p) + work*part
     end do
   end subroutine share_out
-
-  !> Depth of a place at the start of the step; a side's length out of the die where nothing is nearer.
-  pure function depth_at_start(die, side, place) result(depth)
-    type(die_t), intent(in) :: die
-    type(side_t), intent(in) :: side   !! as it was then
-    real(wp), intent(in) :: place      !! [-]
-    real(wp) :: depth                  !! [length]
-    type(closest_point_t) :: closest
-
-    call closest_to_side_point(die, nodes_in_axes(side), place, side%length, closest)
-    depth = -side%length
-    if (closest%piece > 0) depth = closest%d
-  end function depth_at_start
 
   !> Shares of the points beside a place, linear between two of them; beyond the first and the last it is theirs.
   pure function hats_at(xi, place) result(hats)

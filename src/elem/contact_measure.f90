@@ -9,6 +9,7 @@ module contact_measure
   use contact_point, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, at_xi, &
                            contact_block, dissipated, is_released, penalties, side_length
   use contact_work, only: kept_work
+  use corner_states, only: corner_before
   use corner_weights, only: corner_length
   use edge_states, only: augment_edges, beside_edges, interval_at_start
   use elem_api, only: totals_t
@@ -155,7 +156,7 @@ contains
     real(wp), intent(in) :: before(:, :, :)   !! (nstate, npoint, nside) one step before [unit of each component]
     type(totals_t), intent(out) :: totals
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: side, penalty(2)
+    real(wp) :: side, penalty(2), begun(contact_block(has_corners(group), size(state, 1)))
     integer :: e, p, q, n
     logical :: corners
 
@@ -174,13 +175,16 @@ contains
         case default
           totals%open = totals%open + 1
         end select
-        call add_point(state(:n, p, e), before(:n, p, e), area_of_point(group%rule, xi, weight, p, section, x(:, :, e)), &
-                       is_control_point(group%rule, p), [1.0_wp, 1.0_wp])
+        call add_point(state(:n, p, e), before(:n, p, e), before(:n, p, e), &
+                       area_of_point(group%rule, xi, weight, p, section, x(:, :, e)), is_control_point(group%rule, p), &
+                       [1.0_wp, 1.0_wp])
         if (.not. corners) cycle
         q = p
         if (group%pairs > 0) q = interval_at_start(before(:, :, e), state(:, :, e), p)
         if (q == 0) cycle
-        call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, q, e), &
+        begun = before(n + 1:2*n, q, e)
+        if (group%pairs == 0) begun = corner_before(before(:, :, e), state(:, :, e), p)
+        call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, q, e), begun, &
                        area_at_corner(state(2*n + 1, p, e), corner_length(xi, p, group%pairs > 0), section, x(:, :, e), side), &
                        .false., &
                        share_at_corner([before(2*n + 1, q, e), state(2*n + 1, p, e)], group%pairs > 0))
@@ -189,9 +193,9 @@ contains
 
   contains
 
-    !> Penetration and friction of a point of side e.
-    subroutine add_point(now, old, area, control, share)
-      real(wp), intent(in) :: now(:), old(:), area
+    !> Penetration and friction of a point of side e, or of a corner, which may have begun the step in another interval.
+    subroutine add_point(now, old, begun, area, control, share)
+      real(wp), intent(in) :: now(:), old(:), begun(:), area
       logical, intent(in) :: control
       real(wp), intent(in) :: share(2)   ! of pressure and friction that acts before and now
       real(wp) :: allowed, lost
@@ -201,7 +205,7 @@ contains
         totals%max_penetration = max(totals%max_penetration, now(at_penetration))
         if (allowed > 0) totals%penetration_ratio = max(totals%penetration_ratio, now(at_penetration)/allowed)
       end if
-      lost = dissipated(old, now, penalty(2))
+      lost = dissipated(begun, now, penalty(2))
       totals%friction_work = totals%friction_work + area*now(at_work)
       totals%contact_work = totals%contact_work + area*kept_work(old, now, penalty, share)
       totals%least_dissipation = min(totals%least_dissipation, lost)

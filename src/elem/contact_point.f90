@@ -115,8 +115,12 @@ contains
     logical, intent(in) :: corners     !! corners of the die are points of contact of their own
     logical :: yes
 
+    integer :: n
+
     yes = nint(state(at_status)) /= contact_open .or. state(at_between) > 0
-    if (corners) yes = yes .or. nint(state(contact_block(corners, size(state)) + at_status)) /= contact_open
+    if (yes .or. .not. corners) return
+    n = contact_block(corners, size(state))
+    yes = nint(state(n + at_status)) /= contact_open .or. state(n + at_between) > 0
   end function is_in_contact
 
   !> Position, length, inner normal and thickness of a point of the side, and their derivatives.

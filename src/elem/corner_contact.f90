@@ -1,18 +1,25 @@
 !> Corners of a die between the integration points of a side as points of contact of their own.
 !>
-!> The deepest corner in the interval between two points (side_corners) acts there with the length of
+!> The corners in the interval between two points (side_corners) act there, each with the length of
 !> the interval as its weight, on what is deeper than half the allowed penetration, where one is given:
 !> a side that lies on the die by a corner has its points for that. Toward an end of the side the weight
-!> goes to zero (corner_weights). The normal force of a corner is pressure only, whatever the law. In the interval at a node on
+!> goes to zero (corner_weights). Were it the deepest one alone, a rib of the die that is narrower than the interval would have
+!> no equilibrium: pressed by one of its corners the side turns onto the other.
+!>
+!> One corner of an interval has a state (corner_states). The friction of others there begins anew with every step (as in
+!> contact_between), no multiplier holds them, and pressure, energy and work of friction are added to those of the first, as
+!> what makes the same on its area.
+!> The normal force of a corner is pressure only, whatever the law. In the interval at a node on
 !> the axis either the corner acts or that node (axis_contact).
 !>
 !> A corner that passes a point within the side goes on in the next interval, with its multiplier and its friction: nothing
 !> changes there. The point itself stays open as it passes, where it was (corner_beside): were it pressed in place of the corner,
 !> it would be held on the face beyond the corner until its pressure is released, and the part would stop and jump.
 module corner_contact
-  use contact_point, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_point_t, most_unknowns, &
-                           contact_block, no_surface, share_to_contact, thinning
+  use contact_point, only: area_at, at_between, at_energy, at_penetration, at_piece, at_pressure, at_status, at_tau, at_work, &
+                           at_xi, contact_block, contact_point_t, most_unknowns, no_surface, share_to_contact, thinning
   use contact_penalties, only: allowed_penetration
+  use corner_states, only: bears, corner_at_start, free_depth, keep_corner
   use corner_weights, only: handing_over, interval_before, share_of_corner
   use dies, only: die_t
   use elem_api, only: report_t
@@ -20,15 +27,12 @@ module corner_contact
   use law_api, only: contact_open, law_t
   use materials, only: material_t
   use plane_vectors, only: turned
-  use rigid_contact, only: drift_t, is_kept, ndof, nodes_in_axes, outer, place_point, press, side_t
+  use rigid_contact, only: drift_t, ndof, nodes_in_axes, outer, place_point, press, side_t
   use shape_functions, only: line3
-  use side_corners, only: closest_at_corner, corner_t, deepest_corner
+  use side_corners, only: closest_at_corner, corner_t, corner_within, deepest_corner
   implicit none
   private
-  public :: corner_beside, corner_share, end_on_axis, press_corner, press_corners
-
-  !> A corner acts on what is deeper than this share of the allowed penetration.
-  real(wp), parameter :: corner_share = 0.5_wp
+  public :: corner_beside, end_on_axis, press_corner, press_corners
 
 contains
 
@@ -87,19 +91,21 @@ contains
     real(wp), intent(inout) :: force(ndof)             !! [force]
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(report_t), intent(inout) :: report
-    type(corner_t) :: corner
-    real(wp) :: from, to, worn(1), done, before(contact_block(.true., size(trial)))
-    integer :: n, at_place
+    type(corner_t) :: corner, other
+    real(wp) :: nodes(2, 3), from, to, worn(1), done, before(contact_block(.true., size(trial)))
+    integer :: k, n, at_place
 
     if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
     call interval_before(xi, p, from, to)
     if (.not. to > from) return
     at_place = size(trial)
     n = contact_block(.true., at_place)
-    call deepest_corner(die, nodes_in_axes(side), from, to, side%length, corner)
+    nodes = nodes_in_axes(side)
+    call deepest_corner(die, nodes, from, to, side%length, corner)
     if (.not. corner%found) return
+    call keep_corner(die, material, side, nodes, from, to, committed(n + 1:2*n, p), corner)
     trial(at_place) = corner%place
-    before = corner_at_start(committed, p, corner)
+    before = corner_at_start(die, material, side, committed, p, corner, first=.true.)
     associate (now => trial(n + 1:2*n))
       worn = thinning(committed(at_place:at_place, p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
       now(at_work) = before(at_work)*worn(1)
@@ -107,34 +113,62 @@ contains
       call corner_at(law, material, drivers, axisym, side, corner, to - from, before, now, force, stiffness)
       ! friction acts with the share of the corner
       now(at_work) = done + share_of_corner(corner%place, of_body=.false.)*(now(at_work) - done)
-      if (nint(before(at_status)) /= contact_open) then
-        report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
-      end if
-      report%event = min(report%event, share_to_contact(before, now, side%length))
+      call report_corner(side, before, now, report)
     end associate
+    do k = 1, size(die%corners, 2)
+      if (k == corner%number) cycle
+      call corner_within(die, k, nodes, from, to, side%length, 0.0_wp, other)
+      if (.not. other%found) cycle
+      before = corner_at_start(die, material, side, committed, p, other, first=.false.)
+      before(at_work) = 0
+      call press_another(law, material, drivers, axisym, side, other, to - from, before, corner%place, trial(n + 1:2*n), force, &
+                         stiffness, report)
+    end do
   end subroutine press_corner
 
-  !> State of a corner in the interval before a point as the step began: where it was in contact in an interval beside, what it
-  !> was there, but its work, which stays where it was done.
-  pure function corner_at_start(committed, p, corner) result(state)
-    real(wp), intent(in) :: committed(:, :)
-    integer, intent(in) :: p
-    type(corner_t), intent(in) :: corner
-    real(wp) :: state(contact_block(.true., size(committed, 1)))
-    integer :: q, n
+  !> What is in contact goes on without a jump, what comes into contact within a step does so at its beginning.
+  pure subroutine report_corner(side, before, now, report)
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: before(:), now(:)   !! (nstate) of the corner [unit of each component]
+    type(report_t), intent(inout) :: report
 
-    n = size(state)
-    state = committed(n + 1:2*n, p)
-    if (nint(state(at_status)) /= contact_open) return
-    do q = max(1, p - 1), min(size(committed, 2), p + 1)
-      associate (beside => committed(n + 1:2*n, q))
-        if (nint(beside(at_status)) == contact_open .or. nint(beside(at_piece)) /= corner%piece) cycle
-        if (beside(at_xi)*corner%xi < 0) cycle   ! the other end of the piece
-        state(:at_augmentation) = beside(:at_augmentation)
-        state([at_piece, at_xi]) = beside([at_piece, at_xi])
-      end associate
-    end do
-  end function corner_at_start
+    if (nint(before(at_status)) /= contact_open) then
+      report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
+    end if
+    report%event = min(report%event, share_to_contact(before, now, side%length))
+  end subroutine report_corner
+
+  !> Contact of a corner beside the one whose state is kept, added to that.
+  pure subroutine press_another(law, material, drivers, axisym, side, corner, weight, before, place, kept, force, stiffness, report)
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: drivers(:, :)   !! (ndriver, 2) of the law [unit of each driver]
+    logical, intent(in) :: axisym
+    type(side_t), intent(in) :: side
+    type(corner_t), intent(in) :: corner
+    real(wp), intent(in) :: weight, before(:)   !! of the interval [-]; (nstate) of this corner [unit of each component]
+    real(wp), intent(in) :: place               !! of the corner whose state is kept [-]
+    real(wp), intent(inout) :: kept(:)          !! (nstate) of that corner [unit of each component]
+    real(wp), intent(inout) :: force(ndof)             !! [force]
+    real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
+    type(report_t), intent(inout) :: report
+    real(wp) :: now(size(before)), part, taken, y(2, 3)
+
+    now = before
+    now([at_pressure, at_tau, at_status]) = 0
+    call corner_at(law, material, drivers, axisym, side, corner, weight, before, now, force, stiffness)
+    call report_corner(side, before, now, report)
+    if (nint(now(at_status)) == contact_open) return
+    y(1, :) = side%x(1, :) + side%du(1:3)
+    y(2, :) = side%x(2, :) + side%du(4:6)
+    part = area_at(place, side%section, y)
+    if (.not. part > 0) return
+    part = share_of_corner(corner%place, of_body=.false.)*area_at(corner%place, side%section, y)/part
+    taken = now(at_work) + 0.5_wp*now(at_tau)**2/side%penalty(2)
+    kept([at_pressure, at_between]) = kept([at_pressure, at_between]) + part*now(at_pressure)
+    kept(at_energy) = kept(at_energy) + part*0.5_wp*now(at_pressure)*(now(at_penetration) - free_depth(material, side))
+    kept(at_work) = kept(at_work) + part*taken
+  end subroutine press_another
 
   !> A corner of the die was in contact beside a point within the side as the step began, nearer than an end of a side would
   !> take its load over from it.
@@ -166,24 +200,20 @@ contains
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
     type(drift_t) :: drift
-    real(wp) :: allowed, share, before(ndof), toward_end, depth
+    real(wp) :: share, before(ndof), toward_end
 
     call place_point(side, corner%place, point)
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     share = share_of_corner(corner%place, of_body=.false.)
-    allowed = corner_share*allowed_penetration(material)*side%length
-    ! what is kept in contact answers to the depth at the start of the step (contact_point)
-    depth = corner%d
-    if (is_kept(side, committed)) depth = committed(at_penetration)
-    if (.not. (committed(at_augmentation) + side%penalty(1)*(depth - allowed) > 0 .and. share > 0)) then
+    if (.not. bears(material, side, corner, committed)) then
       ! its gap is known; at the very end of the side the next one has it
       trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
       return
     end if
     call follow_corner(side, corner, point, drift)
     before = force
-    call press(law, material, drivers, side, corner%place, point, closest_at_corner(corner), allowed, &
-               weight*share, committed, trial, force, stiffness, drift)
+    call press(law, material, drivers, side, corner%place, point, closest_at_corner(corner), &
+               free_depth(material, side), weight*share, committed, trial, force, stiffness, drift)
     if (.not. (side%tangent .and. share < 1)) return
     ! the share changes with the position: d(ln share) = -sign(place)/(1 - |place|) d(place)
     toward_end = sign(1.0_wp, corner%place)/(1 - abs(corner%place))

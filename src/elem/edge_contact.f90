@@ -15,7 +15,7 @@ module edge_contact
   use contact_penalties, only: allowed_penetration
   use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_block, &
                            contact_point_t, meeting_t, most_unknowns, no_surface, share_to_contact, side_point, thinning
-  use corner_contact, only: corner_share
+  use corner_states, only: corner_share
   use corner_weights, only: corner_length, handing_over, interval_before, share_of_corner
   use dies, only: die_t
   use edge_states, only: edge_at_start

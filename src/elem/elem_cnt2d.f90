@@ -43,6 +43,7 @@ module elem_cnt2d
   use rigid_contact, only: closest_or_followed, ndof, nodes_in_axes, place_point, press, side_t
   use scene, only: axisymmetric, group_t, role_contact, scene_t
   use state_variables, only: state_variable, state_variable_t, transfer_recompute
+  use start_depths, only: state_at_start
   implicit none
   private
   public :: elem_cnt2d_row
@@ -226,7 +227,7 @@ contains
     type(contact_point_t) :: point
     type(closest_point_t) :: closest
     type(release_t) :: release
-    real(wp) :: before(ndof)
+    real(wp) :: before(ndof), start(size(committed))
     logical :: passed
 
     call place_point(side, xi, point)
@@ -243,10 +244,12 @@ contains
       return
     end if
     if (abs(closest%d) <= touching*side%length) closest%d = 0
+    start = committed
+    if (closest%d > 0) start = state_at_start(die, side, xi, committed)
     before = force
     passed = .false.
     if (side%kept) passed = passes_corner(die, committed, closest)
-    call press(law, material, drivers, side, xi, point, closest, 0.0_wp, weight*release%share, committed, trial, force, stiffness, &
+    call press(law, material, drivers, side, xi, point, closest, 0.0_wp, weight*release%share, start, trial, force, stiffness, &
                released=passed)
     if (.not. (side%tangent .and. release%share < 1)) return
     stiffness = stiffness + release%slope/release%share*spread(force - before, 2, ndof) &

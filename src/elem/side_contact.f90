@@ -17,6 +17,7 @@ module side_contact
   use materials, only: material_t
   use plane_vectors, only: left_of, turned
   use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_at_start, side_t
+  use start_depths, only: state_at_start
   implicit none
   private
   public :: press_side
@@ -39,7 +40,7 @@ contains
     real(wp), intent(inout) :: stiffness(ndof, ndof)   !! [force/unknown]
     type(node_t) :: nodes(3)
     type(release_t) :: release
-    real(wp) :: before(ndof), bearing(3)
+    real(wp) :: before(ndof), bearing(3), start(size(committed, 1))
     integer :: i
 
     do i = 1, 3
@@ -50,9 +51,11 @@ contains
       call find_closest(die, side, nodes(i), inward(nodes(i)%point, nodes(2)%point, place(i)), committed(:, i), nodes(i)%closest, &
                         release)
       if (nodes(i)%closest%piece == 0) cycle
+      start = committed(:, i)
+      if (nodes(i)%closest%d > 0) start = state_at_start(die, side, place(i), committed(:, i))
       before = force
       call press(law, material, drivers(:, :, i), side, place(i), end_area(nodes(i)%point, nodes(2)%point), nodes(i)%closest, &
-                 0.0_wp, release%share, committed(:, i), trial(:, i), force, stiffness, &
+                 0.0_wp, release%share, start, trial(:, i), force, stiffness, &
                  released=side%kept .and. passes_corner(die, committed(:, i), nodes(i)%closest), bearing=bearing(i))
       call add_release(side, nodes(i), release, force - before, stiffness)
     end do
@@ -157,6 +160,7 @@ contains
     if (open .and. control%meeting%d > 0) then
       call depth_at_start(die, side, nodes(2)%face, depth)
       start(at_augmentation) = -side%penalty(1)*max(0.0_wp, depth(2) - max(0.0_wp, depth(1)))
+      if (new) start(at_penetration) = depth(2)
     else if (new .and. .not. open) then
       call depth_at_start(die, side, nodes(2)%face, depth)
       start(at_augmentation) = committed(at_pressure) - side%penalty(1)*depth(2)

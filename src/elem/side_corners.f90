@@ -15,11 +15,13 @@ module side_corners
   use vectors, only: length_of
   implicit none
   private
-  public :: corner_t, deepest_corner, closest_at_corner
+  public :: corner_t, corner_within, deepest_corner, closest_at_corner
 
   !> The corner deepest in an interval of a side.
   type :: corner_t
     logical :: found = .false.
+    !> Which one of the die it is.
+    integer :: number = 0
     !> Position on the side.
     real(wp) :: place = 0.0_wp
     !> Piece and position on the die; in the pilot's axes the corner, and the normal of depth, inner for the die.
@@ -46,25 +48,40 @@ contains
     type(corner_t), intent(out) :: corner
     real(wp), intent(in), optional :: beyond   !! the side goes on so far beyond its ends, 0 where absent [-]
     type(corner_t) :: one
-    real(wp) :: box(4), more, range(2)
+    real(wp) :: more
     integer :: k
 
     more = 0
     if (present(beyond)) more = beyond
-    range = [from, to] + more*[merge(0, -1, from > -1), merge(0, 1, to < 1)]
-    box = [minval(side, 2) - reach, maxval(side, 2) + reach]
     do k = 1, size(die%corners, 2)
-      one%vertex = die%corners(1:2, k)
-      if (any(one%vertex < box(1:2)) .or. any(one%vertex > box(3:4))) cycle
-      one%place = nearest_place(side, one%vertex, more)
-      if (one%place < range(1) .or. .not. one%place < range(2)) cycle
-      one%piece = die%corner_piece(k)
-      one%xi = die%corner_xi(k)
-      call measure_corner(die%corners(3:4, k), die%corners(5:6, k), side, one)
-      if (.not. (one%found .and. abs(one%d) < reach)) cycle
+      call corner_within(die, k, side, from, to, reach, more, one)
+      if (.not. one%found) cycle
       if (.not. corner%found .or. one%d > corner%d) corner = one
     end do
   end subroutine deepest_corner
+
+  !> A corner of a die, if it is between two positions on a side and nearer than `reach`.
+  pure subroutine corner_within(die, number, side, from, to, reach, beyond, corner)
+    type(die_t), intent(in) :: die
+    integer, intent(in) :: number        !! of the corner
+    real(wp), intent(in) :: side(2, 3)   !! nodes of the side in the pilot's axes [length]
+    real(wp), intent(in) :: from, to     !! positions on the side; `to` belongs to the next interval
+    real(wp), intent(in) :: reach        !! [length]
+    real(wp), intent(in) :: beyond       !! the side goes on so far beyond its ends [-]
+    type(corner_t), intent(out) :: corner
+    real(wp) :: range(2)
+
+    corner%number = number
+    corner%vertex = die%corners(1:2, number)
+    if (any(corner%vertex < minval(side, 2) - reach) .or. any(corner%vertex > maxval(side, 2) + reach)) return
+    range = [from, to] + beyond*[merge(0, -1, from > -1), merge(0, 1, to < 1)]
+    corner%place = nearest_place(side, corner%vertex, beyond)
+    if (corner%place < range(1) .or. .not. corner%place < range(2)) return
+    corner%piece = die%corner_piece(number)
+    corner%xi = die%corner_xi(number)
+    call measure_corner(die%corners(3:4, number), die%corners(5:6, number), side, corner)
+    corner%found = corner%found .and. abs(corner%d) < reach
+  end subroutine corner_within
 
   !> Place on a side that is the nearest to a corner, beyond the side where an end of it is. Where a side is bent the distance is
   !> stationary at others as well: beyond the centre of curvature it has a maximum, and another minimum appears at a distance.

@@ -40,7 +40,8 @@ contains
       factors = .false.
       if (present(at_hand)) factors = at_hand
       if (.not. factors) then
-        if (solve%own(pilot_field)) call hold_free_dies(equations%dofs, residual, solve, equations%slides)
+        if (solve%own(pilot_field)) &
+          call hold_free_dies(equations%dofs, residual, equations%seated, equations%size, solve, equations%slides)
         call equations%timers%add('factorisation', timer)
         call equations%timers%start(timer)
         call factorise(solve%solver, solve%values, error)

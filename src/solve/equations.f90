@@ -78,6 +78,8 @@ module equations
     real(wp) :: more_drag = 1.0_wp
     !> Components of pilots that friction alone holds, and whose points all slide, in the last correction (3, ndie).
     logical, allocatable :: slides(:, :)
+    !> Forces on dies that the present step started just in touch with the part, 0 for others (ndie; seating).
+    real(wp), allocatable :: seated(:)
     type(ledger_t) :: timers
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).
@@ -88,6 +90,8 @@ module equations
     real(wp) :: heat_stored = 0.0_wp, heat_released = 0.0_wp
     !> Viscous force over velocity of the unknowns in a step that is damped (ndof); not allocated in others (damping).
     real(wp), allocatable :: damping(:)
+    !> Motion in such a step that meets no viscous force (ndof).
+    real(wp), allocatable :: carried(:)
     !> Weights of the quantities in norms over several of them (convergence).
     real(wp), allocatable :: weight(:)
     !> Nodes of the solid elements, and the pairs that unknowns and pattern are of.

@@ -78,7 +78,7 @@ contains
                            tangent, equations%wall, equations%buffers%force, equations%buffers%matrix, report)
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
       damped = allocated(equations%damping) .and. dt > 0 .and. solve%own(displacement_field)
-      if (damped) equations%force = equations%force + equations%damping*du/dt
+      if (damped) equations%force = equations%force + equations%damping*(du - equations%carried)/dt
       dragged = solve%own(displacement_field) .and. any(equations%drag > 0)
       if (dragged) equations%force = equations%force + equations%drag*du
       if (tangent) then

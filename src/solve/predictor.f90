@@ -75,6 +75,7 @@ contains
     real(wp) :: bend(size(du))   !! of the path [unknown]
 
     equations%slides = .false.
+    equations%seated = 0
     call find_known_motion(scene, equations, solution, dt, go_on, left, known)
     staying = known%staying
     kept = .false.
@@ -167,7 +168,8 @@ contains
       where (known%back) du = -onset*du
       call leave_at_rest(scene, equations, solution, solution%time + dt, du)
       call leave_dies_at_rest(scene, equations%dofs, solution, external, du)
-      if (.not. known%goes_on) call seat_dies(scene, equations%dofs, solution, external, equations%size, du)
+      if (.not. known%goes_on) &
+        call seat_dies(scene, equations%dofs, solution, external, equations%size, du, equations%seated)
       if (present(given)) du = merge(given, du, known%fixed)
       do k = 1, size(known%motion)
         associate (p => equations%dofs%prescribed(k))

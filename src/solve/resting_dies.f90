@@ -5,6 +5,10 @@
 !> closes its equation, which is empty, has a diagonal. Where all points that touch it slide, friction does not answer its motion
 !> across them: its equation has a diagonal too. None of this changes a force. Where a force is on it that nothing answers the
 !> equation stays empty, and the matrix is singular.
+!>
+!> A die that a force has taken over a gap starts just in touch (seating): contact has hardly any pressure there, so that friction,
+!> and the normals of a bend, hardly answer what else is free of it. A correction by such a matrix would throw it off the part.
+!> Until contact has taken half of the force a share of its stiffness is added to the diagonals of the pilot: in the matrix alone.
 module resting_dies
   use contact_changes, only: touching_dies
   use dofs, only: dofs_t
@@ -20,6 +24,8 @@ module resting_dies
 
   !> Entries of the matrix below this share of the largest one are round-off.
   real(wp), parameter :: nothing = 1.0e-14_wp
+  !> Share of its force that a die just in touch still has to give to contact, and what holds it over the contact's stiffness.
+  real(wp), parameter :: not_taken = 0.5_wp, held_until_taken = 1.0e-3_wp
 
 contains
 
@@ -64,12 +70,16 @@ contains
   !> A diagonal for the equations of pilots that have no column: for those that are empty and without a residual, and for those of
   !> dies whose points all slide, as large as what their pressures make of friction. A die that friction alone holds comes so to
   !> where one of its points sticks.
-  pure subroutine hold_free_dies(dofs, residual, solve, slides)
+  pure subroutine hold_free_dies(dofs, residual, seated, lever, solve, slides)
     type(dofs_t), intent(in) :: dofs
     real(wp), intent(in) :: residual(:)     !! (ndof) [residual]
+    real(wp), intent(in) :: seated(:)       !! (ndie) forces on dies that the step started just in touch, 0 for others [force]
+    real(wp), intent(in) :: lever           !! size of the scene [length]
     type(solve_t), intent(inout) :: solve   !! its matrix
     logical, intent(out) :: slides(:, :)    !! (3, ndie) components of pilots held in the latter way
     real(wp) :: column(0:solve%neq), row(solve%neq), diagonal(0:solve%neq)
+    real(wp) :: across
+    logical :: touching
     integer :: c, k
 
     slides = .false.
@@ -82,10 +92,17 @@ contains
       end do
       diagonal = 0
       do k = 1, size(pilot, 2)
+        touching = seated(k) > 0
+        if (touching) touching = norm2(pack(residual(max(1, pilot(:2, k))), pilot(:2, k) > 0)) > not_taken*seated(k)
+        if (touching) across = stiffness_across(pilot(:2, k))
         do c = 1, size(pilot, 1)
           if (pilot(c, k) == 0) cycle
           associate (equation => solve%equation(pilot(c, k)))
             if (equation == 0) cycle
+            if (touching) then
+              diagonal(equation) = held_until_taken*across*merge(lever**2, 1.0_wp, c == 3)
+              cycle
+            end if
             if (column(equation) > nothing*column(0)) cycle
             slides(c, k) = row(equation) > nothing*column(0)
             if (slides(c, k)) diagonal(equation) = row(equation)
@@ -95,6 +112,26 @@ contains
       end do
     end associate
     if (any(diagonal > 0)) call add_to_diagonal(solve%pattern, diagonal, solve%values)
+
+  contains
+
+    !> Largest diagonal of the equations of a pilot along X and Y.
+    pure function stiffness_across(number) result(stiffness)
+      integer, intent(in) :: number(2)   !! its unknowns, 0 for none
+      real(wp) :: stiffness              !! [force/length]
+      real(wp) :: own(2)
+      integer :: i, n
+
+      own = 0
+      do n = 1, solve%pattern%nnz
+        if (solve%pattern%row(n) /= solve%pattern%column(n)) cycle
+        do i = 1, 2
+          if (number(i) == 0) cycle
+          if (solve%equation(number(i)) == solve%pattern%row(n)) own(i) = own(i) + solve%values(n)
+        end do
+      end do
+      stiffness = maxval(own)
+    end function stiffness_across
   end subroutine hold_free_dies
 
   !> Components of pilots that have an equation, and whose motion changes no force of the last matrix of the solve.

@@ -36,18 +36,20 @@ module seating
 contains
 
   !> Move the pilots of such dies in the motion of a prediction.
-  subroutine seat_dies(scene, dofs, solution, external, scale, du)
+  subroutine seat_dies(scene, dofs, solution, external, scale, du, seated)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: external(:)   !! (ndof) forces at the end of the step [residual]
     real(wp), intent(in) :: scale         !! size of the scene [length]
     real(wp), intent(inout) :: du(:)      !! (ndof) motion of the step [unknown]
+    real(wp), intent(out) :: seated(:)    !! (ndie) forces on those that were moved, 0 for others [force]
     logical :: idle(size(scene%dies))
     real(wp), allocatable :: x(:, :)
     real(wp) :: pilot(3), push(2), way
     integer :: k
 
+    seated = 0
     if (size(scene%die_forces) == 0) return
     idle = idle_dies(scene, solution)
     do k = 1, size(scene%dies)
@@ -59,6 +61,7 @@ contains
       call add_motion(dofs%fields(pilot_field)%number(:, k), pilot)
       call find_way(scene, x, k, pilot, push/length_of(push), longest_way*scale, way)
       if (.not. way > 0) cycle
+      seated(k) = length_of(push)
       push = way*push/length_of(push)
       call move(dofs%fields(pilot_field)%number(1:2, k), push)
     end do

@@ -41,7 +41,7 @@ contains
     integer :: solved
 
     solved = corrections_of_motion(equations)
-    call prepare_damping(scene, solution, equations)
+    call prepare_damping(scene, solution, dt, equations)
     call take_turns(scene, equations, solution, dt, exchange, outcome)
     call end_exchange(equations, exchange)
     call judge_contours(scene, equations, solution, outcome)

@@ -101,6 +101,21 @@ def heated_free(checks):
     return max(abs(peaks[0]/peaks[1] - 1), float(abs(free["u"]).max() > 0.5))
 
 
+def hook(checks):
+    """A hook that snaps past a ledge, pushed by its foot; beside the same with the ledge moved: forces on the ledge before and after."""
+    body = ("BLOCK b PL8LS 4 m\n 0. 0. 20. 0. 20. 1.5 0. 1.5\n 20 1. 2 1.\nBLOCK h PL8LS 4 m\n 20. 0. 23.5 0. 23.5 1.5 20. 1.5\n 4 1. 2 1.\n"
+            "BLOCK k PL8LS 4 m\n 20. 1.5 23.5 1.5 21. 3. 20. 3.\n 4 1. 3 1.\nJOIN b 2 h 4\nJOIN h 3 k 1\n")
+    ledge = ("DIE d\n SEGM 28. 10. 28. 2.\n FILLT .1 1.E-3\n SEGM 28. 2. 25. 2.\n FILLT .1 1.E-3\n SEGM 25. 2. 25. 10.\n"
+             "CNT2D k 2 3 4 d c\nCNT2D h 2 d c\nCNT2D b 3 d c\n")
+    laws = "LAW m ELA\n 2000. 0.35\nLAW c COUL2D\n PENETR 1.E-3 PHI 0.2\n"
+    found = []
+    for name, moves in (("foot", "MOVE b 4 X t 8.\nFIXED b 4 Y\n"), ("ledge", "MOVE d X t -8.\nFIXED b 4 XY\n")):
+        run = checks.run(f"hook-{name}", deck("PLSTN", "LOG", body, laws, ledge + moves + "LIC t\n 0. 0. 0.8 0.8\n", "STRAT 0.01 1.E-6 0.02 5 3"))
+        found.append(np.array([np.interp(t, run.history["time"], run.history["force_x_d"]) for t in (0.45, 0.7, 0.8)]))
+    return float(abs(found[0]/found[1] - 1).max())
+
+
 CASES = (Case("free billets under dies that lean", free_billets, 1e-3), Case("free strip on rollers", free_strip, 1e-4),
          Case("creeping strip let go", creeping_strip_let_go, 1e-9), Case("heated and free", heated_free, 1e-5),
-         Case("sheets on rollers", sheets_on_rollers, 5e-4))
+         Case("sheets on rollers", sheets_on_rollers, 5e-4),
+         Case("hook past a ledge", hook, 1e-2))

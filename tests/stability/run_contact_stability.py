@@ -16,6 +16,8 @@ measured by this script; the upper block faces the lower one with -3 points ther
   the penetration allowed, found from nodes and die alone (tests/runs/die_depth.py). `flat`: a ring under friction whose sides follow
   their die; the force on it beside that of -3 points, in all steps.
 - `bezier`: the billet that folds on two meshes, its free side with BEZIER, and the ring; numbers as in `along`.
+- `ribs`: a rib of a die, narrower than half a side, pressed into a block where both of its corners lie between two points of a side.
+  `beside`: its force over the mean of those with the rib a twelfth of the side to either side, less one.
 - `augmented`: a billet between dies with much friction and a small allowed depth, whose multipliers are carried forward up to 20 or 50
   times a step. `cutbacks`: steps that were cut back though they had been in equilibrium, for an augmentation after it had none.
 """
@@ -29,7 +31,7 @@ from die_depth import sampled  # noqa: E402
 from patch_support import STRESS, Checks, Run, np, num  # noqa: E402
 from run_contact_pair import PRESSURE, stacked  # noqa: E402
 
-BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002, "cutbacks": 0.5, "depth": 2.0, "flat": 0.002}
+BOUND = {"unlike": 0.01, "lateral": 1.0e-12, "moved": 0.002, "cutbacks": 0.5, "depth": 2.0, "flat": 0.002, "beside": 0.1}
 # Sides of the lower and of the upper block; before: plane strain, axisymmetric.
 UNLIKE = {(4, 5): (0.095, 0.118), (5, 4): (0.166, 0.331), (7, 4): (0.225, 0.506), (4, 7): (0.056, 0.063), (10, 3): (0.776, 1.107),
           (3, 10): (0.001, 0.004), (20, 2): (np.inf, np.inf), (2, 20): (0.001, 0.001)}
@@ -47,6 +49,9 @@ SHOULDER = ("DIE d PILOT 0. 10.\n   SEGM 30. 10. 7. 10.\n   FILLT 2. 1.E-3\n   S
 RING = ("DIE d PILOT 0. 7.\n   SEGM 30. 7. -1. 7.\n", "CNT2D b 2 3 4 d {points} film\n")
 ALONG = {"fold 6x9": ("6 1. 9 1.", 0, 10, 15, FOLD, -9, 23.1), "shoulder": ("8 1. 6 1.", 0, 14, 10, SHOULDER, -3, 76.3)}
 BEZIER = {"fold 6x9": ("6 1. 9 1.", 0, 10, 15, FOLD_BEZIER, -9, 23.1), "fold 12x18": ("12 1. 18 1.", 0, 10, 15, FOLD_BEZIER, -9, 30.7)}
+# Width of a rib, material, friction, travel; before.
+RIBS = {"elastic": (0.05, "ELA", 0.0, 0.01, np.inf), "elastic thin phi .3": (0.02, "ELA", 0.3, 0.01, np.inf),
+        "plastic phi .4": (0.03, "PLASTIC", 0.4, 0.05, np.inf)}
 MATERIALS = {"ELA": "LAW m ELA\n   200000. 0.3\n", "HARD": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 500.\n",
              "PLASTIC": "LAW m EPLA\n   200000. 0.3\n   LINEAR 300. 0.\n"}
 
@@ -85,6 +90,26 @@ def corners(checks):
             rows.append((f"corner {name}", "lateral", before[0], abs(slight[0]/slight[1])))
         if on and out and within:
             rows.append((f"corner {name}", "moved", before[1], max(abs(on[1]/other[1] - 1) for other in (out, within))))
+    return rows
+
+
+def rib(checks, name, width, material, phi, travel, place):
+    """Force of a rib at a place between the middle of a block, which is a node, and the next node of a corner, 0.125 away."""
+    points = [(place - side*(width/2 + slope), 0.5 + rise) for side, slope, rise in ((-1, 0.15, 0.2), (-1, 0, 0), (1, 0, 0), (1, 0.15, 0.2))]
+    pieces = "".join(f"   SEGM {a[0]!r} {a[1]!r} {b[0]!r} {b[1]!r}\n" for a, b in zip(points, points[1:]))
+    text = (f"TITLE rib\nSTATE PLSTN\nKINEM LOG\nBLOCK b PL8LS 4 m\n   -0.5 0. 0.5 0. 0.5 0.5 -0.5 0.5\n   8 1. 4 1.\n{MATERIALS[material]}"
+            f"LAW c COUL2D\n   PENETR 1.E-3 PHI {phi}\nDIE d PILOT 0. 0.5\n{pieces}CNT2D b 3 d c\nFIXED b 1 XY\nLIC t\n   0. 0. 1. 1.\n"
+            f"MOVE d Y t -{travel}\nSTRAT .05 1.E-6 .05 5 3\nEND\n")
+    run = Run(checks, name, text)
+    return run.history["force_y_d"][-1] if run.ok else np.inf
+
+
+def ribs(checks):
+    """Rows of the table: two corners of a die between two points of a side."""
+    rows = []
+    for name, (*setting, before) in RIBS.items():
+        low, force, high = (rib(checks, f"rib-{name.replace(' ', '-')}-{k}", *setting, k/96) for k in (2, 3, 4))
+        rows.append((f"ribs {name}", "beside", before, abs(2*force/(low + high) - 1)))
     return rows
 
 
@@ -156,7 +181,7 @@ def cutbacks_after_equilibrium(listing):
 def main():
     checks = Checks()
     print(f"{'case':24s} {'number':8s} {'before':>9s} {'now':>9s} {'bound':>9s} {'margin':>7s}")
-    for part in (unlike_sides, corners, along, bezier, augmented):
+    for part in (unlike_sides, corners, along, bezier, ribs, augmented):
         for case, what, before, now in part(checks):
             bound = BOUND[what]
             print(f"{case:24s} {what:8s} {before:9.2g} {now:9.2g} {bound:9.2g} {1 - now/bound:7.2f}", flush=True)

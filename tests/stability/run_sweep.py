@@ -6,7 +6,9 @@ usage: run_sweep.py [-v] [-k]       -v prints every check, -k keeps the results
 `one step`: a flat die that a card moves by half the block's height in a single step, beside the same in 100 steps. `soft spring`: a die
 under a force that only a weak spring holds before it meets the block; beside the press that is moved to the same force. `rib`: a closed
 die, thinner than a side is long, whose way ends below the block: the run must not end with 0. `slide`: a block that slides along a
-curved floor by two sides a step passes nothing, and takes no more steps than its deck asks for.
+curved floor by two sides a step passes nothing, and takes no more steps than its deck asks for. `round`: a round die that a force
+takes over a gap onto the block, its bottom between two pieces over a node, free along X, to turn, or both as well; how far it goes in
+beside the same die that begins without a gap, less one.
 The table has the error of the die's force (`rib`: the exit code, `slide`: the steps too many), of the code before the sweep of a step
 was searched (`before`, measured by this script), and now.
 """
@@ -66,6 +68,17 @@ def soft_spring(checks, state, spring):
     return abs((500 - spring*travel)/moved - 1) if moved > 0 else 1.0
 
 
+def round_die(checks, free, gap):
+    """How far a round die goes into the block under a force."""
+    def point(a):
+        return f"{5 + 5*np.cos(a):.15g} {15 + gap + 5*np.sin(a):.15g}"
+    arcs = "".join(f"   ARC {point(k*np.pi/2)} {point((k - 0.5)*np.pi/2)} {point((k - 1)*np.pi/2)} 1.E-3\n" for k in (4, 3, 2, 1))
+    more = ("FIXED b 1 XY\nFORCE d Y -5. w\n" + "".join(f"FREE d {c}\n" for c in free)
+            + "LIC w\n   0. 0. 1. 1.\nSTRAT .02 1.E-6 .05 5 3\n")
+    run = Run(checks, f"round-{free}-{gap}", BLOCK.format(state="PLSTN", n=8, phi=0.1, pilot=f"5. {15 + gap}", die=arcs, side=3, more=more))
+    return -run.history["displacement_y_d"][-1] - gap if run.ok else np.nan
+
+
 def rib(checks):
     """Exit code of a die that would have to cut the block."""
     text = BLOCK.format(state="PLSTN", n=4, phi=0.1, pilot="5. 12.", die=RIB, side=3,
@@ -92,6 +105,8 @@ def main():
     for state in STATES:
         for spring in (0.1, 10.0):
             rows.append((f"soft spring {state.lower()} {spring:g}", 1.0, soft_spring(checks, state, spring), FORCE))
+    for free in ("", "X", "A", "XA"):
+        rows.append((f"round {free}", np.inf, abs(round_die(checks, free, 0.02)/round_die(checks, free, 0) - 1), FORCE))
     rows.append(("slide", 0, slide(checks), 0.5))
     print(f"{'case':28s} {'before':>9s} {'now':>9s} {'bound':>9s}")
     for name, before, now, bound in rows:
