@@ -11,6 +11,7 @@ usage: run_kinetics.py [-v] [-k]
   runs by steps of 10, 2 and 0.5 s agree.
 - `cycle`: quenched, tempered, made austenite again, twice: no heat is left, without LATENT of TEMPERED and with any; with unlike heat capacities it is so where
   LATENT follows them (Kirchhoff), and otherwise `--check` tells how much is made in a cycle.
+- `conducted`: heat is conducted by the phases of the instant at which it flows: TR-BDF2 is of second order where they differ in LAMBDA.
 - `error`: the largest error in time that is told is 0.7 to 4 times that of the run, where latent heat of pearlite is most of it.
 """
 import os
@@ -66,6 +67,17 @@ PHASE  ALL
    RHOC   4
 PHASE  PEARLITE
    LATENT 400
+STEEL  conducting
+SOURCE 'made up, for tests: martensite conducts three times as well'
+TEMPS  MS 350
+MARTEN BETA 0.015
+PHASE  ALL
+   RHOC   4
+PHASE  AUSTENITE
+   LAMBDA 15
+PHASE  MARTENSITE
+   LAMBDA 45
+   LATENT 640
 END
 """
 DECK = """TITLE  {title}
@@ -187,6 +199,19 @@ def error(checks):
             checks.that(0.7*largest < told < 4*largest, f"{name}: told and found", (told, largest))
 
 
+def conducted(checks):
+    """20 mm hardened through, in steps of 0.4 and 0.2 s of TR-BDF2: the error of the mean temperature falls with the square of the step."""
+    cards = SLOWLY.format(start=850., h=2., ts=20., strat="0.02 1.E-5 {step} 40 3", stop=30., theta="TRBDF2")
+    found = {}
+    for step in (0.02, 0.2, 0.4):
+        rows = rows_of(checks, f"conducted_{step:g}", "conducting", cards.format(step=step), ["martensite"], "BILINEAR", 20., 4)
+        if not rows:
+            return
+        found[step] = rows["t"][-1]
+    ratio = (found[0.4] - found[0.02])/(found[0.2] - found[0.02])
+    checks.that(3 < ratio < 5.5, "conducted: errors of steps of 0.4 s over those of 0.2 s", (ratio, found))
+
+
 def between(times, values, time):
     """Linear between the rows of a history."""
     k = max(1, next((k for k, other in enumerate(times) if other >= time), len(times) - 1))
@@ -245,6 +270,7 @@ def main():
     cold(checks)
     top(checks)
     error(checks)
+    conducted(checks)
     checks.end()
 
 
