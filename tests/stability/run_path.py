@@ -25,6 +25,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.p
 from patch_support import LAGAMINE, SOURCE, STRESS, Checks, Run, np  # noqa: E402
 
 CARRIED = (0.5, 3.0)     # told over true errors of the stress
+HEATED = (0.5, 2.0)      # the same where temperatures make most of them
 ALLOWED = 0.01           # of the necking force at 5 mm, and of the relaxed stress
 FACTOR = 3.0             # of an estimate, up and down
 WIDE = "NORMS  PATH 0.9 RATE 0.9\n"
@@ -189,6 +190,7 @@ QUENCHES = {
     "no phases": ({"steel": f"{STEEL} stable", "own": "TIME 1.", "exchange": 3., "end": 12.}, 0.5),
     "phases of the heat": ({"steel": f"{HARDENING} hardening", "own": "", "exchange": 1., "end": 24.}, 1.0),
     "phases of its own": ({"steel": f"{HARDENING} hardening", "own": "TIME 1.", "exchange": 1., "end": 24.}, 1.0),
+    "cold, in air": ({"steel": f"{HARDENING} hardening", "own": "", "exchange": 0.3, "end": 300.}, 2.0),
 }
 
 # A sheet, free: it has no stress, through martensite and its plasticity too.
@@ -368,7 +370,7 @@ def heated(checks):
             told, true = whole["accuracy"]["path"], 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
             ratio = told["stress_pct"]/true
             print(f"{name:22s} {whole['steps']:6d} {true:9.4f} {told['stress_pct']:9.4f} {ratio:11.2f}")
-            checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
+            checks.that("stress_known" not in told and HEATED[0] <= ratio <= HEATED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
 
 
 def elastic(checks):
@@ -388,7 +390,7 @@ def elastic(checks):
             told = json.load(file)["accuracy"]["heat"].get("stress_pct", 0)
         true = 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
         print(f"{'elastic':22s} {len(run.history['step']):6d} {true:9.4f} {told:9.4f} {told/true:11.2f}")
-        checks.that(CARRIED[0] <= told/true <= CARRIED[1], f"elastic, {step:g} s, {more.split()[-1:]}: told error of the stress", told/true)
+        checks.that(HEATED[0] <= told/true <= HEATED[1], f"elastic, {step:g} s, {more.split()[-1:]}: told error of the stress", told/true)
 
 
 def tight(checks):
