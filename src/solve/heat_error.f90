@@ -13,10 +13,10 @@
 !> are as in the step; dies with a heat capacity of their own have errors as nodes do. (Global errors by the linearised equation
 !> with the local ones as its sources: R.D. Skeel, Thirteen ways to estimate global error, Numer. Math. 48 (1986) 1-20.)
 !>
-!> Where points have kinetics, phases err too, dz, and with them latent heat and conductivity: what has come too late is made up for.
-!> There d0 is what the content takes up less from a start with the errors of temperatures and phases to the same temperatures at
-!> the end (kinetics_error), less dt times what flows more by the phases that are left of these errors; dz1 is what the points make of
-!> all errors, and what the step errs in phases itself.
+!> Where points have kinetics, phases err too, dz, and with them latent heat and conductivity: what has come too late is made up
+!> for. There d0 is what the content takes up less from a start with the errors of temperatures and phases to the same
+!> temperatures at the end (kinetics_error), less dt times what flows more by the phases that are left of these errors; dz1 is
+!> what the points make of all errors, and what the step errs in phases itself.
 module heat_error
   use corrections, only: solve_correction
   use elem_api, only: report_t
