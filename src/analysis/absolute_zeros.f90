@@ -1,9 +1,11 @@
 !> Offsets of temperatures of a deck: what makes one absolute is the same on all cards. Radiation has it as ZERO, G'Sell-Jonas as
-!> TABS, and a steel has in ZERO what makes it degC, 273.15 less.
+!> TABS, and a steel has in ZERO what makes it degC, 273.15 less. Where all cards take temperatures for degC, surroundings that
+!> would be a room in kelvin, with nothing colder in the deck, say that they are kelvin.
 module absolute_zeros
+  use fields, only: find_field
   use kinds, only: wp
   use law_api, only: find_parameter, law_t
-  use loads, only: by_radiation
+  use loads, only: by_convection, by_radiation
   use scene, only: role_heat_contact, scene_t
   use text, only: add_text, string_t, to_text
   implicit none
@@ -14,6 +16,9 @@ module absolute_zeros
   real(wp), parameter :: freezing = 273.15_wp
   !> 273 for 273.15 is no mistake [temperature].
   real(wp), parameter :: slack = 1.0_wp
+  !> A room, or water from the tap [K]. Salt and air are as hot in degC now and then; something in such a deck is colder than
+  !> anything is in kelvin.
+  real(wp), parameter :: room(2) = [280.0_wp, 304.0_wp], coldest_of_kelvin = 250.0_wp
 
 contains
 
@@ -27,6 +32,7 @@ contains
     logical :: told
     integer :: k, p, a
 
+    call judge_rooms(scene, laws, warnings)
     told = .false.
     do k = 1, size(scene%groups)
       associate (group => scene%groups(k))
@@ -74,5 +80,60 @@ contains
     end subroutine compare
 
   end subroutine judge_zeros
+
+  !> A warning where the surroundings are hot by what a card adds to make temperatures degC, and a room in kelvin.
+  subroutine judge_rooms(scene, laws, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    character(len=:), allocatable :: card, should
+    real(wp) :: coldest, other
+    integer :: g, k, p, f, at
+
+    card = ''
+    do g = 1, size(scene%groups)
+      associate (exchange => scene%groups(g)%exchange)
+        if (exchange%kind == by_radiation .and. abs(exchange%zero - freezing) < slack) then
+          card = 'ZERO '//to_text(exchange%zero, 5)//' of '//scene%groups(g)%name
+          should = 'ZERO is 0 then, and -273.15 of a steel'
+        end if
+      end associate
+    end do
+    do k = 1, size(scene%materials)
+      p = find_parameter(laws(scene%materials(k)%law_id), 'ZERO')
+      if (.not. laws(scene%materials(k)%law_id)%of_steel .or. p == 0) cycle
+      if (abs(scene%materials(k)%values(p)) > slack) cycle
+      card = 'ZERO '//to_text(scene%materials(k)%values(p), 5)//' of LAW '//scene%materials(k)%name
+      should = 'ZERO of a steel is -273.15 then'
+    end do
+    f = find_field(scene%fields, 'temperature')
+    if (len(card) == 0 .or. f == 0) return
+    if (.not. scene%fields(f)%declared) return
+    coldest = huge(coldest)
+    at = 0
+    do g = 1, size(scene%groups)
+      associate (exchange => scene%groups(g)%exchange)
+        if (all(exchange%kind /= [by_convection, by_radiation])) cycle
+        other = exchange%surroundings
+        if (exchange%surroundings_multiplier > 0) &
+          other = other*minval(scene%multipliers(exchange%surroundings_multiplier)%value)
+        if (other < coldest) at = g
+        coldest = min(coldest, other)
+      end associate
+    end do
+    if (at == 0 .or. coldest < room(1) .or. coldest > room(2)) return
+    other = coldest
+    if (allocated(scene%starts)) then
+      do k = 1, size(scene%starts)
+        if (scene%starts(k)%field == f) other = min(other, minval(scene%starts(k)%values))
+      end do
+    else
+      other = min(other, scene%fields(f)%initial)
+    end if
+    if (other < coldest_of_kelvin) return
+    call add_text(warnings, scene%groups(at)%name//': surroundings at '//to_text(coldest, 4)//' are '//to_text(coldest, 4) &
+                  //' degC by '//card//'; where the deck is in kelvin, so that they are '//to_text(coldest - freezing, 3) &
+                  //' degC, '//should)
+  end subroutine judge_rooms
 
 end module absolute_zeros

@@ -59,6 +59,11 @@ contains
     call book_heat_flows(scene, equations, solution)
     call note_heat_step(outcome%heat, solution%heat)
     call note_path_step(outcome%path, dt, solution%time + dt, solution%path)
+    if (allocated(outcome%heat%phases)) then
+      do g = 1, size(solution%groups)
+        if (allocated(outcome%heat%phases(g)%value)) solution%groups(g)%error = outcome%heat%phases(g)%value
+      end do
+    end if
     if (allocated(outcome%path%states)) then
       do g = 1, size(solution%groups)
         if (allocated(outcome%path%states(g)%value)) solution%groups(g)%error = outcome%path%states(g)%value

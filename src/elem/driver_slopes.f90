@@ -8,9 +8,11 @@
 !>
 !> Where the law of heat is driven by measures of the stress (METAMEC), mechanics has a fourth plane: d(heat released)/d(measure at
 !> the end) at the point, found in the same way at the stress of the last evaluation; PL8LS knows how the stress follows the motion.
+!> Planes behind it hold d(LAMBDA)/d(measure at the end) times the weight, for each instant at which heat flows: phases conduct.
 module driver_slopes
   use driver_values, only: field_at_points
-  use drivers, only: drivers_t, drives_heat, from_state, from_stress, with_slopes
+  use drivers, only: drivers_t, drives_heat, from_itself, from_state, from_stress, with_slopes
+  use elem_api, only: instant_t
   use fields, only: find_field
   use kinds, only: wp
   use law_api, only: driver_count, driver_temperature, law_t
@@ -24,18 +26,20 @@ module driver_slopes
 contains
 
   !> The third plane of a group's drivers.
-  subroutine fill_slopes(scene, laws, solution, now, dt, g, drivers)
+  subroutine fill_slopes(scene, laws, solution, now, instant, g, drivers)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: now(:, :)    !! (nnode, nfield) trial values of the nodal fields of one component [unit of each field]
-    real(wp), intent(in) :: dt           !! length of the step [time]
+    type(instant_t), intent(in) :: instant
     integer, intent(in) :: g             !! number of the group
     type(drivers_t), intent(inout) :: drivers(:)   !! (ngroup)
     real(wp), allocatable :: high(:), low(:)   ! state of a point at a higher and at a lower temperature
+    real(wp) :: dt   ! since the start of the step [time]
     integer :: k, body, other, e, f, n
 
-    if (drives_heat(drivers(g))) call fill_heat(scene, laws, solution, now, dt, g, drivers)
+    dt = instant%dt/instant%share
+    if (drives_heat(drivers(g))) call fill_heat(scene, laws, solution, now, instant, dt, g, drivers)
     if (.not. with_slopes(drivers(g))) return
     drivers(g)%value(:, 3, :, :) = 0
     if (.not. dt > 0) return   ! on a new mesh nothing forms
@@ -80,17 +84,20 @@ contains
 
   end subroutine fill_slopes
 
-  !> The fourth plane of a group's drivers: heat released per volume and unit of each measure of its stress.
-  subroutine fill_heat(scene, laws, solution, now, dt, g, drivers)
+  !> The fourth plane of a group's drivers and those behind it: heat released per volume and conductivity, per unit of each measure
+  !> of its stress.
+  subroutine fill_heat(scene, laws, solution, now, instant, dt, g, drivers)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: now(:, :), dt
+    real(wp), intent(in) :: now(:, :)
+    type(instant_t), intent(in) :: instant
+    real(wp), intent(in) :: dt
     integer, intent(in) :: g
     type(drivers_t), intent(inout) :: drivers(:)
     integer :: other, e, f, k
 
-    drivers(g)%value(:, 4, :, :) = 0
+    drivers(g)%value(:, 4:, :, :) = 0
     if (.not. dt > 0) return
     f = find_field(scene%fields, temperature_field)
     do other = 1, size(drivers)
@@ -109,13 +116,13 @@ contains
       real(wp), intent(in) :: before(:), after(:)
       real(wp) :: given(driver_count(laws(scene%materials(scene%groups(other)%material)%law_id)), 2)
       real(wp) :: change, high, low, of_work, slope
-      real(wp), allocatable :: state(:)
+      real(wp), allocatable :: more(:), less(:)   ! states
       integer :: p, d, n
 
       associate (material => scene%materials(scene%groups(other)%material), committed => solution%groups(other)%committed, &
                  sources => drivers(other)%source)
         n = size(committed, 1)
-        allocate (state(n))
+        allocate (more(n), less(n))
         do p = 1, size(before)
           given = drivers(other)%value(:size(given, 1), :2, p, e)
           given(driver_temperature, :) = [before(p), after(p)]
@@ -124,15 +131,42 @@ contains
             change = epsilon(1.0_wp)**(1.0_wp/3)*maxval(abs(given(:, 2)), mask=sources(:size(given, 1))%kind == from_stress)
             if (.not. change > 0) cycle
             given(d, 2) = given(d, 2) + change
-            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), high, of_work, slope, state)
+            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), high, of_work, slope, more)
             given(d, 2) = given(d, 2) - 2*change
-            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), low, of_work, slope, state)
+            call laws(material%law_id)%release(material, dt, given, committed(:n, p, e), low, of_work, slope, less)
             given(d, 2) = given(d, 2) + change
             drivers(g)%value(sources(d)%measure, 4, p, e) = (high - low)/(2*change)
+            do k = 1, instant%flow%n
+              drivers(g)%value(sources(d)%measure, 4 + k, p, e) = &
+                instant%flow%weight(k)*conductivity_by(k, given, 0.5_wp*(more + less), (more - less)/(2*change))
+            end do
           end do
         end do
       end associate
     end subroutine heat_of_element
+
+    !> By how much a point conducts better at an instant of the flow rule, by a change of its states at the end of the step.
+    pure function conductivity_by(instant_of_flow, given, state, changes) result(change)
+      integer, intent(in) :: instant_of_flow
+      real(wp), intent(in) :: given(:, :)             !! (ndriver, 2)
+      real(wp), intent(in) :: state(:), changes(:)    !! (nstate) at the end of the step, and by how much they change
+      real(wp) :: change                              !! [power/length/temperature/unit of the change]
+      real(wp) :: at(size(given, 1), 1), by_driver(size(given, 1), 1), conductivity(1), slope(1)
+      integer :: d
+
+      associate (share => instant%flow%share(instant_of_flow), sources => drivers(other)%source(:size(given, 1)), &
+                 material => scene%materials(scene%groups(other)%material))
+        at(:, 1) = (1 - share)*given(:, 1) + share*given(:, 2)
+        do d = 1, size(sources)
+          if (sources(d)%kind == from_itself) at(d, 1) = (1 - share)*given(d, 1) + share*state(sources(d)%row(other))
+        end do
+        call laws(material%law_id)%conduct(material, at, conductivity, slope, by_driver)
+        change = 0
+        do d = 1, size(sources)
+          if (sources(d)%kind == from_itself) change = change + share*by_driver(d, 1)*changes(sources(d)%row(other))
+        end do
+      end associate
+    end function conductivity_by
 
   end subroutine fill_heat
 

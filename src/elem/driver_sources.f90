@@ -2,7 +2,7 @@
 module driver_sources
   use drivers, only: at_body_effusivity, at_corner_place, at_die_effusivity, at_handed, at_status, driver_source_t, drivers_t, &
                      flow_name, from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, &
-                     from_stretch, from_unloading, heat_contact_drivers, is_scalar, not_handed, of_contact
+                     from_stretch, from_unloading, heat_contact_drivers, is_scalar, not_handed, of_contact, planes_of_heat
   use fields, only: find_field
   use kinds, only: wp
   use heat_sources, only: work_name
@@ -70,7 +70,7 @@ contains
           allocate (drivers(g)%value(n, 3, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
         else if (n >= nmeasure .and. stresses_heat(scene, laws, g)) then
           deallocate (drivers(g)%value)
-          allocate (drivers(g)%value(n, 4, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
+          allocate (drivers(g)%value(n, planes_of_heat, group%rule%n, size(group%connectivity, 2)), source=0.0_wp)
         end if
         drivers(g)%vary = any(drivers(g)%source%kind == from_field .or. drivers(g)%source%kind == from_state &
                                .or. drivers(g)%source%kind == from_stress)

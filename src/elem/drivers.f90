@@ -27,11 +27,14 @@ module drivers
             from_effusivity, from_stress, from_unloading, from_stretch, flow_name, at_status, at_pressure, at_gap, at_die_piece, &
             at_die_xi, at_friction_work, at_corner_work, at_corner_place, at_body_effusivity, at_die_effusivity, at_handed, &
             heat_contact_drivers, not_handed, of_contact, &
-            driver_source_t, drivers_t, with_slopes, drives_heat, drivers_of_half, own_states_at_end, is_scalar
+            driver_source_t, drivers_t, with_slopes, drives_heat, planes_of_heat, drivers_of_half, own_states_at_end, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
   integer, parameter :: from_nothing = 0, from_field = 1, from_state = 2, from_flow = 3, from_itself = 4, from_effusivity = 5, &
                         from_stress = 6, from_unloading = 7, from_stretch = 8
+  !> Planes of drivers where stress drives heat: values at both ends of the step, one of slopes that is not used, heat, and
+  !> conductivity at the instants of the flow rule, two at most.
+  integer, parameter :: planes_of_heat = 6
   !> Name of the flow stress of the body behind a side.
   character(len=*), parameter :: flow_name = 'flow_stress'
 
@@ -58,8 +61,8 @@ module drivers
   !> Drivers of the points of a group.
   type :: drivers_t
     !> At the start and at the end of the step (ndriver, 2, npoint, nelem); no rows where the law has none but the temperature of
-    !> its body. With a third plane where states that follow an unknown temperature drive it, and with a fourth where its stress
-    !> drives heat that is solved for together with it (driver_slopes).
+    !> its body. With a third plane where states that follow an unknown temperature drive it, and with a fourth to sixth where its
+    !> stress drives heat that is solved for together with it (driver_slopes).
     real(wp), allocatable :: value(:, :, :, :)
     type(driver_source_t), allocatable :: source(:)
     !> They change within a step.
@@ -85,12 +88,13 @@ contains
     yes = size(drivers%value, 2) == 3
   end function with_slopes
 
-  !> The drivers have a fourth plane: heat by the measures of the stress, in their order (stress_measures).
+  !> The drivers have planes of heat, and of conductivity at each instant of the flow rule, by the measures of the stress, in their
+  !> order (stress_measures).
   pure function drives_heat(drivers) result(yes)
     type(drivers_t), intent(in) :: drivers
     logical :: yes
 
-    yes = size(drivers%value, 2) == 4
+    yes = size(drivers%value, 2) == planes_of_heat
   end function drives_heat
 
   !> Drivers of the first or the second part of a step, halves if nothing else is said: what changes goes straight, and states of

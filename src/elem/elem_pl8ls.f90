@@ -18,7 +18,7 @@ module elem_pl8ls
   use mean_dilatation, only: dilatation_t, mean_option, share_dilatation, share_pressure
   use plane_stress_points, only: update_plane_stress
   use plastic_heat, only: add_rows_of_heat, heated_by_work, latent_slopes, ncomponent, shares_of_work, &
-                          volumes_at
+                          volumes_at, weights_of_flow, weights_of_release
   use point_temperatures, only: nodal_temperatures, point_temperatures_of, projected_functions, temperature_field, temperature_place
   use quad8_geometry, only: quad8_rule_t, quad8_rule, derivatives
   use scene, only: generalised_plane_strain, group_t, plane_stress, role_body, scene_t
@@ -197,7 +197,7 @@ contains
       if (.not. instant%solved(layout%field(temperature_place(layout)))) return
       call add_columns_of_temperature()
       if (allocated(by_work)) call add_work()
-      if (size(drivers, 2) == 4 .and. instant%mode == mode_advance .and. instant%content) call add_latent()
+      if (size(drivers, 2) > 3 .and. instant%mode == mode_advance .and. instant%content) call add_latent()
     end subroutine couple_to_temperature
 
     !> Forces of the stresses at the points of an element on its mechanical unknowns, and the matrix where it is wanted.
@@ -300,7 +300,7 @@ contains
 
       shifted = given
       shifted(driver_temperature, 2, :) = shifted(driver_temperature, 2, :) + change
-      if (size(drivers, 2) > 2) then
+      if (size(drivers, 2) == 3) then
         ! states that follow the temperature
         do k = 2, size(given, 1)
           shifted(k, 2, :) = shifted(k, 2, :) + change*reshape(drivers(k, 3, :, :), [group%rule%n*nb])
@@ -318,9 +318,11 @@ contains
       if (.not. any(abs(slopes) > 0)) return
       call shares_of_work(scene, group, instant, layout, rule, start, share)
       if (kinematics%finite .and. scene%plane_state /= plane_stress) then
-        call add_rows_of_heat(instant, layout, rule, volumes_of_work(), nx, ny, motion_across(), share, slopes, stiffness)
+        call add_rows_of_heat(layout, rule, weights_of_release(instant, layout, rule, volumes_of_work(), share), nx, ny, &
+                              motion_across(), slopes, stiffness)
       else
-        call add_rows_of_heat(instant, layout, rule, volumes_of_mesh(), nx, ny, motion_across(), share, slopes, stiffness)
+        call add_rows_of_heat(layout, rule, weights_of_release(instant, layout, rule, volumes_of_mesh(), share), nx, ny, &
+                              motion_across(), slopes, stiffness)
       end if
     end subroutine add_work
 
@@ -334,14 +336,19 @@ contains
     !> Volumes at the start of the mesh.
     function volumes_of_mesh() result(volume)
       real(wp) :: volume(group%rule%n, nb)
+
+      volume = volumes_at(rule, scene%section, nodes_of_mesh())
+    end function volumes_of_mesh
+
+    !> Nodes at the start of the mesh.
+    function nodes_of_mesh() result(x0)
       real(wp) :: x0(2, 8, nb)
       integer :: i
 
       do i = 1, nb
         x0(:, :, i) = scene%mesh%coordinates(:, group%connectivity(:, first + i - 1))
       end do
-      volume = volumes_at(rule, scene%section, x0)
-    end function volumes_of_mesh
+    end function nodes_of_mesh
 
     !> d h_zz/d(motion): of the nodes, and of the section where it moves.
     function motion_across() result(zz)
@@ -361,20 +368,38 @@ contains
       end do
     end function motion_across
 
-    !> The same of latent heat that the stress drives (METAMEC), from the derivatives of the stress.
+    !> The same of latent heat that the stress drives (METAMEC), and of the conductivity of those phases, from the derivatives of
+    !> the stress.
     subroutine add_latent()
-      real(wp) :: slopes(ncomponent + 1, group%rule%n, nb), share(group%rule%n, nb)
-      integer :: i, p
+      real(wp) :: slopes(ncomponent + 1, group%rule%n, nb), share(group%rule%n, nb), weight(8, group%rule%n, nb)
+      integer :: k
 
       share = 1
+      call slopes_by_stress(4, slopes)
+      call add_rows_of_heat(layout, rule, weights_of_release(instant, layout, rule, volumes_of_mesh(), share), nx, ny, &
+                            motion_across(), slopes, stiffness)
+      do k = 1, instant%flow%n
+        if (.not. any(abs(drivers(:, 4 + k, :, :)) > 0)) cycle
+        call slopes_by_stress(4 + k, slopes)
+        weight = weights_of_flow(scene, instant, layout, kinematics%finite, rule, k, nodes_of_mesh(), x, du, start)
+        if (scene%plane_state == plane_stress .and. kinematics%finite) weight = weight*spread(committed(nstate, :, :), 1, 8)
+        call add_rows_of_heat(layout, rule, weight, nx, ny, motion_across(), slopes, stiffness)
+      end do
+    end subroutine add_latent
+
+    !> Derivatives along h and the temperature of what the measures of the stress drive, by a plane of the drivers.
+    subroutine slopes_by_stress(plane, slopes)
+      integer, intent(in) :: plane
+      real(wp), intent(out) :: slopes(:, :, :)
+      integer :: i, p
+
       do i = 1, nb
         do p = 1, group%rule%n
-          call latent_slopes(scene%plane_state == plane_stress, drivers(:, 4, p, i), trial(1:4, p, i), tangent(:, :, p, i), &
+          call latent_slopes(scene%plane_state == plane_stress, drivers(:, plane, p, i), trial(1:4, p, i), tangent(:, :, p, i), &
                              warmer(:4, p, i), slopes(:, p, i))
         end do
       end do
-      call add_rows_of_heat(instant, layout, rule, volumes_of_mesh(), nx, ny, motion_across(), share, slopes, stiffness)
-    end subroutine add_latent
+    end subroutine slopes_by_stress
 
   end subroutine compute
 

@@ -96,6 +96,20 @@ contains
     end do
   end subroutine variables
 
+  !> Rows of the state variables of the formulation that drive its law, 0 for other drivers.
+  pure function own_states(law, group) result(rows)
+    type(law_t), intent(in) :: law
+    type(group_t), intent(in) :: group
+    integer :: rows(driver_count(law))
+    integer :: k, v
+
+    rows = 0
+    do k = 2, size(rows)
+      v = find_variable(group%variables, law%drivers(k - 1)%name)
+      if (v > 0) rows(k) = group%variables(v)%first
+    end do
+  end function own_states
+
   subroutine compute(scene, group, kinematics, law, instant, layout, first, x, du, start, drivers, committed, trial, &
                      force, stiffness, report)
     type(scene_t), intent(in) :: scene
@@ -115,6 +129,9 @@ contains
     type(functions_t) :: own
     type(heat_points_t) :: place
     real(wp) :: motion(16)
+    real(wp) :: mixture(min(size(drivers, 1), driver_count(law)), 2, group%rule%n), by_end(size(committed, 1), group%rule%n)
+    real(wp) :: phases_by_end(min(size(drivers, 1), driver_count(law)), group%rule%n)
+    integer :: phase(driver_count(law))
     integer :: e, k, u, ratio, due, n, m
 
     force = 0
@@ -134,6 +151,7 @@ contains
     if (due > 0) due = group%variables(due)%first
     n = size(committed, 1) - count([ratio, due] > 0)
     m = min(size(drivers, 1), driver_count(law))
+    phase = own_states(law, group)
     call quad8_rule(group%rule%n, rule)
     call functions_of(group%option == bilinear, rule, own)
     u = first_unknown(layout, displacement_field)
@@ -164,14 +182,23 @@ contains
           call add_content(instant, law, material, rule%npoint, own, group%option == bilinear, place, drivers(:m, :, :, e), &
                            du(:own%n, e), start(:own%n, e), force(:, e), stiffness(:, :, e), report%heat_stored)
           call add_released(instant, law, material, rule%npoint, own, place, drivers(:m, :, :, e), du(:own%n, e), &
-                            start(:own%n, e), u, committed(:n, :, e), trial(:n, :, e), force(:, e), stiffness(:, :, e), report)
+                            start(:own%n, e), u, committed(:n, :, e), trial(:n, :, e), force(:, e), stiffness(:, :, e), &
+                            by_end(:n, :), report)
           if (due > 0) then
             call add_due(instant, rule%npoint, own, place, committed(due, :, e), force(:, e), report)
             trial(due, :, e) = 0
           end if
         end if
+        ! heat is conducted by the phases that there are then
+        mixture = drivers(:m, :, :, e)
+        phases_by_end = 0
+        do k = 1, m
+          if (.not. (phase(k) > 0 .and. instant%reach > 0)) cycle
+          mixture(k, 2, :) = trial(phase(k), :, e)
+          if (instant%content) phases_by_end(k, :) = by_end(phase(k), :)
+        end do
         do k = 1, instant%flow%n
-          call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, drivers(:m, :, :, e), &
+          call add_flow(instant, k, law, material, kinematics%finite, rule%npoint, own, place, mixture, phases_by_end, &
                         du(:own%n, e), start(:own%n, e), u, force(:, e), stiffness(:, :, e))
         end do
       end associate
@@ -368,7 +395,7 @@ contains
 
   !> Heat that a change of volume takes up, less that released at the points, per time.
   pure subroutine add_released(instant, law, material, npoint, own, place, drivers, change, start, u, committed, trial, force, &
-                               stiffness, report)
+                               stiffness, by_end, report)
     type(instant_t), intent(in) :: instant
     type(law_t), intent(in) :: law
     type(material_t), intent(in) :: material
@@ -381,6 +408,7 @@ contains
     real(wp), intent(in) :: committed(:, :)               !! (nstate, npoint)
     real(wp), intent(inout) :: trial(:, :)
     real(wp), intent(inout) :: force(:), stiffness(:, :)
+    real(wp), intent(out) :: by_end(:, :)                 !! (nstate, npoint) d(state)/d(temperature at the end)
     type(report_t), intent(inout) :: report
     real(wp) :: given(max(1, size(drivers, 1)), 2), released, of_work, slope, surplus, per_strain, share, heat(own%n), counted
     integer :: p, j, n
@@ -388,6 +416,7 @@ contains
     n = own%n
     heat = 0
     counted = 0
+    by_end = 0
     do p = 1, npoint
       share = place%dv0(p)/instant%dt
       per_strain = law%swell(material, dot_product(own%phi(:n, p), start))
@@ -403,7 +432,7 @@ contains
       given(driver_temperature, :) = [dot_product(own%phi(:n, p), start), dot_product(own%phi(:n, p), start + change)]
       ! what happens at a point takes the time since the start of the step
       call law%release(material, instant%dt/instant%share, given, committed(:, p), released, of_work, slope, trial(:, p), &
-                       surplus)
+                       surplus, by_end(:, p))
       heat = heat - own%phi(:n, p)*(released*share + of_work*(place%worked(p)/instant%dt))
       counted = counted + surplus*place%dv0(p)
       if (.not. instant%tangent .or. .not. abs(slope) > 0) cycle
@@ -436,7 +465,8 @@ contains
   end subroutine add_due
 
   !> Heat conducted at one of the instants of the flow rule.
-  pure subroutine add_flow(instant, k, law, material, finite, npoint, own, place, drivers, change, start, u, force, stiffness)
+  pure subroutine add_flow(instant, k, law, material, finite, npoint, own, place, drivers, by_end, change, start, u, &
+                           force, stiffness)
     type(instant_t), intent(in) :: instant
     integer, intent(in) :: k
     type(law_t), intent(in) :: law
@@ -446,9 +476,11 @@ contains
     type(functions_t), intent(in) :: own
     type(heat_points_t), intent(in) :: place
     real(wp), intent(in) :: drivers(:, :, :), change(:), start(:)
+    real(wp), intent(in) :: by_end(:, :)   !! (ndriver, npoint) d(drivers at the end)/d(temperature there)
     integer, intent(in) :: u
     real(wp), intent(inout) :: force(:), stiffness(:, :)
     real(wp) :: t(size(start)), given(max(1, size(drivers, 1)), npoint), lambda(npoint), by_temperature(npoint), slope(2), dv
+    real(wp) :: by_driver(max(1, size(drivers, 1)), npoint)
     integer :: p, j, i, n
 
     n = own%n
@@ -457,7 +489,12 @@ contains
       given = 0
       if (size(drivers, 1) > 1) given(2:, :) = (1 - share)*drivers(2:, 1, :) + share*drivers(2:, 2, :)
       given(driver_temperature, :) = matmul(t, own%phi(:n, :npoint))
-      call law%conduct(material, given, lambda, by_temperature)
+      if (instant%tangent .and. any(abs(by_end) > 0)) then
+        call law%conduct(material, given, lambda, by_temperature, by_driver)
+        by_temperature = by_temperature + sum(by_driver*by_end, 1)
+      else
+        call law%conduct(material, given, lambda, by_temperature)
+      end if
       do p = 1, npoint
         dv = weight*place%dv(p)
         associate (gx => place%gx(:n, p), gy => place%gy(:n, p), nx => place%nx(:, p), ny => place%ny(:, p))

@@ -48,14 +48,16 @@ contains
     real(wp), intent(in) :: start(:), du(:)          !! (ndof) values at the start of the step, and motion [unknown]
     real(wp), intent(inout) :: force(:)              !! (ndof) [residual]
     real(wp), intent(inout) :: stiffness(:, :)       !! (ndof, ndof) [residual/unknown]
-    real(wp) :: t(6), h(2)
+    real(wp) :: t(6), h(2), gone
     integer :: k, i, j, n
     type(shares_t) :: pair
 
     n = shares%nside + shares%ndie
     do k = 1, instant%flow%n
       t(:n) = start(shares%place(:n)) + instant%flow%share(k)*du(shares%place(:n))
-      h = (1 - instant%flow%share(k))*facing%conductance(:, 1) + instant%flow%share(k)*facing%conductance(:, 2)
+      ! conductances are those at both ends of the whole step, of which a stage is a part
+      gone = instant%flow%share(k)*instant%reach
+      h = (1 - gone)*facing%conductance(:, 1) + gone*facing%conductance(:, 2)
       if (shares%nside == 3) then
         call add_flow(contact, instant, k, shares, 1.0_wp, t(:n), h, area, moving, force, stiffness)
         cycle

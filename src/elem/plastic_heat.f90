@@ -4,12 +4,12 @@
 !> PL8TM releases it as -phi_i SHARE (w - w_n)/dt dv_n and knows the work w at the points, not how that depends on the motion.
 !> PL8LS does: where all fields are solved for together it adds -phi_i SHARE dw/dt dv_n to the rows of the temperature, with dw
 !> along h = d(du)/dx(n+1) and the temperature at the points. Latent heat r by the mean and von Mises' stress is released as
-!> -phi_i r/dt dv0: there dr = sum dr/dm dm/d sigma d sigma (driver_slopes). Left out are the volume ratio in dv0 of bodies that
-!> have had a new mesh, the sharing of the change of volume by the option MEAN, and the section's own motion in generalised plane
-!> strain.
+!> -phi_i r/dt dv0: there dr = sum dr/dm dm/d sigma d sigma (driver_slopes). The same phases conduct, w_k grad phi_i LAMBDA grad T_k
+!> dv: there dLAMBDA in the same way. Left out are the volume ratio in dv0 of bodies that have had a new mesh, the sharing of the
+!> change of volume by the option MEAN, and the section's own motion in generalised plane strain.
 module plastic_heat
   use elem_api, only: instant_t, layout_t, mode_advance
-  use elem_pl8tm, only: functions_of, functions_t
+  use elem_pl8tm, only: functions_of, functions_t, heat_points_t, place_element
   use fields, only: displacement_field
   use heat_sources, only: share_of_work, work_heated
   use kinds, only: wp
@@ -21,7 +21,8 @@ module plastic_heat
   use stress_measures, only: von_mises
   implicit none
   private
-  public :: add_rows_of_heat, heated_by_work, latent_slopes, ncomponent, shares_of_work, volumes_at
+  public :: add_rows_of_heat, heated_by_work, latent_slopes, ncomponent, shares_of_work, volumes_at, weights_of_flow, &
+            weights_of_release
 
   !> Components of h: xx, xy, yx, yy, zz.
   integer, parameter :: ncomponent = 5
@@ -74,14 +75,14 @@ contains
     end do
   end subroutine shares_of_work
 
-  !> Derivatives of latent heat along h and the temperature, by the measures of the stress that drive it.
+  !> Derivatives of latent heat, or of the conductivity, along h and the temperature, by the measures of the stress that drive it.
   pure subroutine latent_slopes(flat, by_measure, stress, tangent, by_temperature, slopes)
     logical, intent(in) :: flat                     !! plane stress: h_zz follows from no stress there
-    real(wp), intent(in) :: by_measure(:)           !! (nmeasure or more) d(heat)/d(measure) [energy/volume/stress]
+    real(wp), intent(in) :: by_measure(:)           !! (nmeasure or more) d()/d(measure) [unit/stress]
     real(wp), intent(in) :: stress(4)               !! [stress]
     real(wp), intent(in) :: tangent(4, 5)           !! d(stress)/dh [stress]
     real(wp), intent(in) :: by_temperature(4)       !! d(stress)/d(temperature) [stress/temperature]
-    real(wp), intent(out) :: slopes(ncomponent + 1) !! [energy/volume], [energy/volume/temperature]
+    real(wp), intent(out) :: slopes(ncomponent + 1) !! [unit], [unit/temperature]
     real(wp) :: heat(4), deviator(4), q, moduli(4, 5)
     integer :: c
 
@@ -118,29 +119,76 @@ contains
     end do
   end function volumes_at
 
-  !> Add the derivatives of the heat of a block of elements to the rows of the temperature.
-  subroutine add_rows_of_heat(instant, layout, rule, volume, nx, ny, zz, share, slopes, stiffness)
+  !> What a unit of heat released per volume at each point takes from the rows of the temperature.
+  function weights_of_release(instant, layout, rule, volume, share) result(weight)
     type(instant_t), intent(in) :: instant
     type(layout_t), intent(in) :: layout
     type(quad8_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: volume(:, :)                           !! (npoint, nelem) that the heat is per
+    real(wp), intent(in) :: volume(:, :)   !! (npoint, nelem) that the heat is per
+    real(wp), intent(in) :: share(:, :)    !! (npoint, nelem) what becomes heat [-]
+    real(wp) :: weight(8, rule%npoint, size(volume, 2))   !! of each temperature, the first of 8 [volume/time]
+    type(functions_t) :: own
+    integer :: n, e, p
+
+    n = layout%count(temperature_place(layout))
+    call functions_of(n == 4, rule, own)
+    weight = 0
+    do e = 1, size(volume, 2)
+      do p = 1, rule%npoint
+        weight(:n, p, e) = -own%phi(:n, p)*(share(p, e)*volume(p, e)/instant%dt)
+      end do
+    end do
+  end function weights_of_release
+
+  !> What a unit of conductivity at each point brings to the rows of the temperature at one of the instants of the flow rule.
+  function weights_of_flow(scene, instant, layout, finite, rule, k, x0, x, du, start) result(weight)
+    type(scene_t), intent(in) :: scene
+    type(instant_t), intent(in) :: instant
+    type(layout_t), intent(in) :: layout
+    logical, intent(in) :: finite
+    type(quad8_rule_t), intent(in) :: rule
+    integer, intent(in) :: k                               !! instant of the flow rule
+    real(wp), intent(in) :: x0(:, :, :), x(:, :, :)        !! (2, 8, nelem) nodes at the start of the mesh, and of the step [length]
+    real(wp), intent(in) :: du(:, :), start(:, :)          !! (ndof, nelem) motion of the step, and values at its start [unknown]
+    real(wp) :: weight(8, rule%npoint, size(x, 3))         !! of each temperature, the first of 8 [length*temperature]
+    type(functions_t) :: own
+    type(heat_points_t) :: place
+    real(wp) :: t(8)
+    integer :: n, at, e, p
+
+    n = layout%count(temperature_place(layout))
+    at = layout%first(1, temperature_place(layout)) - 1
+    call functions_of(n == 4, rule, own)
+    weight = 0
+    do e = 1, size(x, 3)
+      t(:n) = start(at + 1:at + n, e) + instant%flow%share(k)*du(at + 1:at + n, e)
+      call place_element(scene, instant, finite, rule, own, x0(:, :, e), x(:, :, e), du(:16, e), place)
+      do p = 1, rule%npoint
+        associate (gx => place%gx(:n, p), gy => place%gy(:n, p))
+          weight(:n, p, e) = place%dv(p)*(gx*dot_product(gx, t(:n)) + gy*dot_product(gy, t(:n)))
+        end associate
+      end do
+    end do
+  end function weights_of_flow
+
+  !> Add the derivatives of what a block of elements brings to the rows of the temperature.
+  subroutine add_rows_of_heat(layout, rule, weight, nx, ny, zz, slopes, stiffness)
+    type(layout_t), intent(in) :: layout
+    type(quad8_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: weight(:, :, :)                        !! (8, npoint, nelem) by the row of each temperature
     real(wp), intent(in) :: nx(:, :, :), ny(:, :, :)               !! (8, npoint, nelem) gradients [1/length]
     real(wp), intent(in) :: zz(:, :, :)                            !! (nmotion, npoint, nelem) d h_zz/d(motion) [1/unknown]
-    real(wp), intent(in) :: share(:, :)                            !! (npoint, nelem) what becomes heat of the next [-]
-    real(wp), intent(in) :: slopes(:, :, :)                        !! (6, npoint, nelem) d()/dh [energy/volume], by temperature
+    real(wp), intent(in) :: slopes(:, :, :)                        !! (6, npoint, nelem) d()/dh, and by temperature
     real(wp), intent(inout) :: stiffness(:, :, :)                  !! (ndof, ndof, nelem)
-    type(functions_t) :: own
-    real(wp) :: weight, row(size(stiffness, 2)), projected(8, rule%npoint)
+    real(wp) :: row(size(stiffness, 2)), projected(8, rule%npoint)
     integer :: u, n, e, p, k, at
 
     u = temperature_place(layout)
     n = layout%count(u)
     at = layout%first(1, u) - 1
-    call functions_of(n == 4, rule, own)
     projected = projected_functions(rule)
     do e = 1, size(stiffness, 3)
       do p = 1, rule%npoint
-        weight = share(p, e)*volume(p, e)/instant%dt
         row = 0
         associate (s => slopes(:, p, e))
           row(:size(zz, 1)) = s(5)*zz(:, p, e)
@@ -151,7 +199,7 @@ contains
           end do
         end associate
         do k = 1, n
-          stiffness(at + k, :, e) = stiffness(at + k, :, e) - (own%phi(k, p)*weight)*row
+          stiffness(at + k, :, e) = stiffness(at + k, :, e) + weight(k, p, e)*row
         end do
       end do
     end do

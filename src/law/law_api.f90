@@ -204,13 +204,15 @@ module law_api
       real(wp), intent(out) :: young, poisson   !! [stress], [-]
     end subroutine law_elastic_i
 
-    !> Conductivity of a block of n points, and its derivative by the temperature.
-    pure subroutine law_conduct_i(material, drivers, conductivity, slope)
+    !> Conductivity of a block of n points, and its derivatives by the temperature and by the other drivers.
+    pure subroutine law_conduct_i(material, drivers, conductivity, slope, by_driver)
       import :: material_t, wp
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: drivers(:, :)      !! (ndriver, n) as they are now, temperature first [unit of each driver]
       real(wp), intent(out) :: conductivity(:)   !! (n) [power/length/temperature]
       real(wp), intent(out) :: slope(:)          !! (n) [power/length/temperature^2]
+      !> (ndriver, n) 0 for the temperature [power/length/temperature/unit of each driver]
+      real(wp), intent(out), optional :: by_driver(:, :)
     end subroutine law_conduct_i
 
     !> Heat that a block of n points takes up from one state to another, and its derivative by the temperature at the end.
@@ -230,7 +232,7 @@ module law_api
     end subroutine law_bends_i
 
     !> Heat that a point releases in a step beside what flows, and its derivative by the temperature at the end.
-    pure subroutine law_release_i(material, dt, drivers, committed, released, of_work, slope, history, surplus)
+    pure subroutine law_release_i(material, dt, drivers, committed, released, of_work, slope, history, surplus, changes)
       import :: material_t, wp
       type(material_t), intent(in) :: material
       real(wp), intent(in) :: dt              !! length of the step [time]
@@ -242,6 +244,7 @@ module law_api
       real(wp), intent(out) :: history(:)     !! (nhistory) [unit of each component]
       !> Part of it that is no source: by how much `store` counts more than the point takes up [energy/length^3].
       real(wp), intent(out), optional :: surplus
+      real(wp), intent(out), optional :: changes(:)   !! (nhistory) d(history)/d(temperature at the end)
     end subroutine law_release_i
 
     !> Heat taken up by a change of volume, per volume and unit of volume strain.

@@ -65,14 +65,16 @@ contains
   end subroutine common_parts
 
   !> Conductivity, linear between the temperatures of the card, constant outside.
-  pure subroutine conduct(material, drivers, conductivity, slope)
+  pure subroutine conduct(material, drivers, conductivity, slope, by_driver)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:, :)
     real(wp), intent(out) :: conductivity(:), slope(:)
+    real(wp), intent(out), optional :: by_driver(:, :)
     real(wp) :: share
     integer :: n, k
 
     slope = 0
+    if (present(by_driver)) by_driver = 0
     if (.not. allocated(material%temperatures)) then
       conductivity = material%values(place_conductivity)
       return
@@ -141,16 +143,17 @@ contains
   end function interval
 
   !> The share QUINNEY of the plastic work (G.I. Taylor, H. Quinney 1934) that has not become heat yet.
-  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history, surplus)
+  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history, surplus, changes)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
     real(wp), intent(out) :: released, of_work, slope, history(:)
-    real(wp), intent(out), optional :: surplus
+    real(wp), intent(out), optional :: surplus, changes(:)
 
     released = 0
     of_work = 0
     slope = 0
     if (present(surplus)) surplus = 0
+    if (present(changes)) changes = 0
     if (size(history) == 0) return
     history(1) = drivers(driver_work, 2)
     of_work = share_of_work(material, place_share, drivers(driver_temperature, 1))*(drivers(driver_work, 2) - committed(1))

@@ -1,7 +1,7 @@
 !> META (312), and METAMEC (313), whose phases form under the stress of the body: conduction of heat in a steel whose phases change.
 !>
 !> The points of the body hold the fractions of the phases and what their kinetics remember (src/phases). Heat flow
-!> -LAMBDA(T, z) grad T, LAMBDA that of the mixture at the start of the step. The heat taken up is that of austenite, exact between
+!> -LAMBDA(T, z) grad T, LAMBDA that of the mixture at the instant of the flow. Heat taken up is that of austenite, exact between
 !> any temperatures; what the other phases take up more or less, with the mean of their fractions at both ends of the step, and the
 !> latent heat are released at the points, with the exact derivative by the temperature at the end. In the books of heat the former
 !> is heat taken up, which so is that of the phases there are. A steel whose heat content H holds the latent heat has none beside.
@@ -9,7 +9,7 @@
 !> conductivity, TIME the seconds of its unit of time, ZERO what makes its temperatures degC. QUINNEY turns plastic work into heat.
 !> Source: S. Denis, D. Farias, A. Simon, ISIJ Int. 32 (1992) 316; kinetics: where they stand.
 module law_meta
-  use heat_of_phases, only: capacity_bends, heat_taken, lacking_heat_data, mixture_conductivity
+  use heat_of_phases, only: capacity_bends, heat_taken, lacking_heat_data, mixture_conductivity, phase_conductivities
   use heat_sources, only: share_of_work, work_heated, work_name
   use kinds, only: wp
   use law_api, only: driver_t, driver_temperature, heat_law, law_line, law_t, parameter, parameter_t
@@ -97,11 +97,12 @@ contains
                                   default=0.0_wp, turns_on=.true.)
   end function units
 
-  !> Conductivity of the mixture at the start of the step.
-  pure subroutine conduct(material, drivers, conductivity, slope)
+  !> Conductivity of the mixture.
+  pure subroutine conduct(material, drivers, conductivity, slope, by_driver)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: drivers(:, :)
     real(wp), intent(out) :: conductivity(:), slope(:)
+    real(wp), intent(out), optional :: by_driver(:, :)
     integer :: n
 
     do n = 1, size(conductivity)
@@ -110,6 +111,13 @@ contains
     end do
     conductivity = conductivity*material%values(place_conduct)
     slope = slope*material%values(place_conduct)
+    if (.not. present(by_driver)) return
+    by_driver = 0
+    do n = 1, size(conductivity)
+      by_driver(driver_fraction:driver_fraction + phase_count - 1, n) = &
+        material%values(place_conduct)*phase_conductivities(material%steel, drivers(driver_temperature, n) &
+                                                            + material%values(place_zero))
+    end do
   end subroutine conduct
 
   !> Heat taken up as by austenite.
@@ -137,12 +145,12 @@ contains
 
   !> Phases at the end of the step, their latent heat, by how much they take up less heat than austenite, and the share of the
   !> plastic work that has not become heat yet.
-  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history, surplus)
+  pure subroutine release(material, dt, drivers, committed, released, of_work, slope, history, surplus, changes)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt, drivers(:, :), committed(:)
     real(wp), intent(out) :: released, of_work, slope, history(:)
-    real(wp), intent(out), optional :: surplus
-    real(wp) :: start(state_size), changes(state_size), t(2), taken, capacity, own(2), mean, less, stresses(2, 2)
+    real(wp), intent(out), optional :: surplus, changes(:)
+    real(wp) :: start(state_size), by_end(state_size), t(2), taken, capacity, own(2), mean, less, stresses(2, 2)
     integer :: i
 
     start = committed(:state_size)
@@ -152,7 +160,7 @@ contains
     if (size(drivers, 1) > driver_stress) then
       if (has_number(material, place_isig)) stresses = drivers(driver_stress:driver_stress + 1, :)/material%values(place_stress)
     end if
-    call advance_phases(material%steel, dt*material%values(place_time), t(1), t(2), start, history(:state_size), changes, &
+    call advance_phases(material%steel, dt*material%values(place_time), t(1), t(2), start, history(:state_size), by_end, &
                         released, slope, stresses)
     less = 0
     if (.not. material%steel%one_heat) then
@@ -162,10 +170,14 @@ contains
         if (i == austenite .or. .not. mean > 0) cycle
         call heat_taken(material%steel, i, t(1), t(2), own(1), own(2))
         less = less + mean*(taken - own(1))
-        slope = slope + mean*(capacity - own(2)) + 0.5_wp*changes(i)*(taken - own(1))
+        slope = slope + mean*(capacity - own(2)) + 0.5_wp*by_end(i)*(taken - own(1))
       end do
     end if
     released = (released + less)*material%values(place_energy)
+    if (present(changes)) then
+      changes = 0
+      changes(:state_size) = by_end
+    end if
     if (present(surplus)) surplus = less*material%values(place_energy)
     slope = slope*material%values(place_energy)
     of_work = 0

@@ -17,8 +17,7 @@ module heat_record
     real(wp) :: error_now = 0.0_wp
     !> The temperatures of the nodes that this heat makes (nnode) [temperature].
     real(wp), allocatable :: temperature_error(:)
-    !> What the step errs itself in the states of points with kinetics, along temperatures that bend within it (kinetics_error;
-    !> ngroup); not allocated where that is not known.
+    !> Errors of the states of points with kinetics at its end (heat_error; ngroup); not allocated where they are not known.
     type(state_error_t), allocatable :: phases(:)
     !> Where no law flows, at the end of a run: error of the stress that comes of them, over the stress.
     real(wp) :: stress_error = 0.0_wp

@@ -12,8 +12,8 @@ module solution
   use path_record, only: path_record_t, start_path
   use remesher_options, only: number_of_cuts
   use remeshing, only: estimate_t
-  use scene, only: is_solid, role_body, role_second, scene_t
-  use state_variables, only: total_components
+  use scene, only: group_t, is_solid, role_body, role_second, scene_t
+  use state_variables, only: find_variable, total_components
   use work_books, only: work_t
   implicit none
   private
@@ -23,7 +23,8 @@ module solution
   type :: group_state_t
     real(wp), allocatable :: committed(:, :, :)
     real(wp), allocatable :: trial(:, :, :)
-    !> Error of the committed state that comes of the path within steps; of no elements where it is not estimated.
+    !> Error of the committed state that comes of the path within steps, or of phases that come of that of the temperatures; of no
+    !> elements where it is not estimated.
     real(wp), allocatable :: error(:, :, :)
     !> Displacements of its nodes when it came, of a body that was laid down (ASLEEP) where strains are small (2, node, element);
     !> not allocated, or of no elements, where it was there from the start [length].
@@ -143,7 +144,9 @@ contains
           end do
         end do
         state%trial = state%committed
-        n = merge(size(group%connectivity, 2), 0, scene%follows_path .and. any(group%role == [role_body, role_second]))
+        n = 0
+        if (any(group%role == [role_body, role_second]) .and. (scene%follows_path .or. has_phases(scene, group))) &
+          n = size(group%connectivity, 2)
         allocate (state%error(size(state%committed, 1), npoint, n), source=0.0_wp)
       end associate
     end do
@@ -156,6 +159,18 @@ contains
     allocate (solution%estimate%triggers(0))
     allocate (solution%cuts(number_of_cuts(scene%remesher)))
   end subroutine start_solution
+
+  !> A formulation in which phases form at temperatures that are solved for.
+  pure function has_phases(scene, group) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    logical :: yes
+    integer :: f
+
+    f = find_field(scene%fields, 'temperature')
+    yes = f > 0 .and. find_variable(group%variables, 'austenite') > 0
+    if (yes) yes = scene%fields(f)%declared
+  end function has_phases
 
   !> All fields at rest: zero, the pilots and the section where the scene has them. A field on nodes that no element declares has
   !> no values; pilots and section have theirs in any case, since they place the dies and give the third direction.

@@ -11,7 +11,7 @@ module heat_of_phases
   use text, only: add_text, string_t
   implicit none
   private
-  public :: capacity_bends, heat_taken, mixture_conductivity, lacking_heat_data
+  public :: capacity_bends, heat_taken, mixture_conductivity, phase_conductivities, lacking_heat_data
 
 contains
 
@@ -93,6 +93,19 @@ contains
       slope = slope + fractions(i)*one%slope
     end do
   end subroutine mixture_conductivity
+
+  !> Conductivities of the phases, 0 of those that have none: what a mixture has per fraction.
+  pure function phase_conductivities(steel, temperature) result(conductivity)
+    type(steel_t), intent(in) :: steel
+    real(wp), intent(in) :: temperature           !! [degC]
+    real(wp) :: conductivity(phase_count)         !! [W/m/K]
+    integer :: i
+
+    conductivity = 0
+    do i = 1, phase_count
+      if (is_given(steel%properties(prop_lambda, i))) conductivity(i) = curve_at(steel%properties(prop_lambda, i), temperature)
+    end do
+  end function phase_conductivities
 
   !> What the phases that may be there lack for conduction of heat, a line each.
   pure subroutine lacking_heat_data(steel, problems)

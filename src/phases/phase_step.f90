@@ -66,6 +66,13 @@ contains
       if (direction*(last - k) >= 0) b = dual_t(steel%nodes(k))
       ! the temperature is linear in time; in one piece the whole step
       if (direction*(last - k) >= 0 .or. abs(a%value - before) > 0) time = dt*(b - a)/(finish - before)
+      if (parts == 1 .and. .not. steel%isig%given) then
+        call sub_step(steel, time, a, b, stress, s, released)
+        if (direction*(last - k) < 0) exit
+        a = b
+        k = k + direction
+        cycle
+      end if
       part = (b - a)/real(parts, wp)
       do p = 1, parts
         if (steel%isig%given .and. dt > 0) then
@@ -167,10 +174,12 @@ contains
     type(dual_t) :: others
     integer :: i
 
+    ! written out: it ends every sub-step of every point
     others = dual_t()
     do i = 2, phase_count
       if (s(i)%value < 0) s(i) = dual_t()
-      others = others + s(i)
+      others%value = others%value + s(i)%value
+      others%slope = others%slope + s(i)%slope
     end do
     if (others%value > 1) then
       do i = 2, phase_count
@@ -178,7 +187,7 @@ contains
       end do
       others = dual_t(1.0_wp)
     end if
-    s(austenite) = 1.0_wp - others
+    s(austenite) = dual_t(1 - others%value, -others%slope)
   end subroutine settle
 
   !> Cooling rate on the way through 700 degC.

@@ -1,10 +1,11 @@
 !> Norms of residuals and corrections, and the round-off of both. All tolerances are without unit.
 !>
 !> Each quantity of a solve (motion, temperature) has norms of its own: a force is not compared with a heat flow. What is returned
-!> is the largest of them.
+!> is the largest of them. The section of generalised plane strain has its own too: its force is that on the whole section, those
+!> on nodes are those on sides of the thickness, and which is the larger depends on the unit of length.
 module convergence
   use equations, only: equations_t
-  use fields, only: displacement_field, field_t, pilot_field
+  use fields, only: displacement_field, field_t, pilot_field, section_field
   use kinds, only: wp
   implicit none
   private
@@ -85,7 +86,9 @@ contains
 
     norm = 0
     do q = 1, size(equations%dofs%quantities)
-      if (is_solved_for(equations, q)) norm = larger(norm, residual_of(q))
+      if (.not. is_solved_for(equations, q)) cycle
+      norm = larger(norm, residual_of(q))
+      if (is_motion(equations, q)) norm = larger(norm, residual_of_section())
     end do
 
   contains
@@ -107,6 +110,25 @@ contains
       end if
     end function residual_of
 
+    !> Moments count as forces at the distance of the mesh's size, the axial force is the measure of both. Its round-off is that of
+    !> the forces on nodes, on an area of the mesh's size instead of one of the thickness.
+    pure function residual_of_section() result(own)
+      real(wp) :: own
+      real(wp) :: reference
+
+      own = section_norm(equations, residual, 1/equations%size, free=.true.)
+      if (.not. own > 0) return
+      associate (section => fields(section_field)%value(:, 1), number => equations%dofs%fields(section_field)%number(:, 1))
+        reference = max(section_norm(equations, external, 1/equations%size, free=.false.), own)
+        if (number(1) > 0) reference = max(reference, equations%magnitude(number(1)))
+        if (own <= fields(displacement_field)%floor*max(1.0_wp, equations%size/section(1))) then
+          own = 0
+        else
+          own = own/reference
+        end if
+      end associate
+    end function residual_of_section
+
   end function relative_residual
 
   !> Correction over the motion of the step, angles of pilots left out.
@@ -115,13 +137,19 @@ contains
     type(field_t), intent(in) :: fields(:)         !! (nfield)
     real(wp), intent(in) :: correction(:), du(:)   !! (ndof) [unknown]
     real(wp) :: norm
+    real(wp) :: motion, own
     integer :: q
 
     norm = 0
     do q = 1, size(equations%dofs%quantities)
       if (.not. is_solved_for(equations, q)) cycle
-      norm = larger(norm, free_norm(equations, q, correction, equations%size) &
-                    /max(norm_of(equations, q, du), least_change(equations, fields, q)))
+      motion = max(norm_of(equations, q, du), least_change(equations, fields, q))
+      norm = larger(norm, free_norm(equations, q, correction, equations%size)/motion)
+      if (.not. is_motion(equations, q)) cycle
+      own = section_norm(equations, correction, equations%size, free=.true.)
+      ! a section is as long as it is thick: motions count over that as those of nodes do over the mesh's size
+      if (own > 0) norm = larger(norm, own/max(section_norm(equations, du, equations%size, free=.false.), &
+                                               fields(section_field)%value(1, 1)/equations%size*motion))
     end do
   end function relative_motion
 
@@ -155,6 +183,7 @@ contains
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: v(:)   !! (ndof) [residual]
     real(wp) :: norm
+    real(wp) :: own
     integer :: q, n
 
     n = 0
@@ -162,10 +191,12 @@ contains
     do q = 1, size(equations%dofs%quantities)
       if (.not. is_solved_for(equations, q)) cycle
       n = n + 1
+      own = free_norm(equations, q, v, 1/equations%size)
+      if (is_motion(equations, q)) own = hypot(own, section_norm(equations, v, 1/equations%size, free=.true.))
       if (n == 1) then
-        norm = equations%weight(q)*free_norm(equations, q, v, 1/equations%size)
+        norm = equations%weight(q)*own
       else
-        norm = hypot(norm, equations%weight(q)*free_norm(equations, q, v, 1/equations%size))
+        norm = hypot(norm, equations%weight(q)*own)
       end if
     end do
   end function free_force
@@ -270,28 +301,64 @@ contains
     end do
   end function least_change
 
-  !> Euclidean norm over the unknowns of a quantity, without angles and moments.
+  !> Euclidean norm over the unknowns of a quantity, without angles and moments, and without the section.
   pure function norm_of(equations, q, v) result(norm)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: q
     real(wp), intent(in) :: v(:)
     real(wp) :: norm
 
-    norm = sqrt(sum(v**2, mask=.not. equations%dofs%is_angle .and. equations%dofs%quantity == q))
+    norm = sqrt(sum(v**2, mask=.not. (equations%dofs%is_angle .or. is_of_section(equations)) .and. equations%dofs%quantity == q))
   end function norm_of
 
-  !> Euclidean norm over the free unknowns of a quantity, those that are angles times `lever`.
+  !> Unknowns of the section (ndof).
+  pure function is_of_section(equations) result(yes)
+    type(equations_t), intent(in) :: equations
+    logical :: yes(equations%dofs%ndof)
+    integer :: c
+
+    yes = .false.
+    associate (number => equations%dofs%fields(section_field)%number)
+      do c = 1, size(number)
+        if (number(c, 1) > 0) yes(number(c, 1)) = .true.
+      end do
+    end associate
+  end function is_of_section
+
+  !> Euclidean norm over the unknowns of the section, or its free ones, the slopes of its thickness times `lever`.
+  pure function section_norm(equations, v, lever, free) result(norm)
+    type(equations_t), intent(in) :: equations
+    real(wp), intent(in) :: v(:), lever
+    logical, intent(in) :: free
+    real(wp) :: norm
+    integer :: c, d
+
+    norm = 0
+    associate (number => equations%dofs%fields(section_field)%number)
+      do c = 1, size(number)
+        d = number(c, 1)
+        if (d == 0) cycle
+        if (free .and. equations%solves(equations%now)%equation(d) == 0) cycle
+        norm = norm + merge(v(d), lever*v(d), c == 1)**2
+      end do
+    end associate
+    norm = sqrt(norm)
+  end function section_norm
+
+  !> Euclidean norm over the free unknowns of a quantity but for the section, those that are angles times `lever`.
   pure function free_norm(equations, q, v, lever) result(norm)
     type(equations_t), intent(in) :: equations
     integer, intent(in) :: q
     real(wp), intent(in) :: v(:), lever
     real(wp) :: norm
+    logical :: apart(size(v))
     integer :: d
 
     norm = 0
+    apart = is_of_section(equations)
     associate (solve => equations%solves(equations%now))
       do d = 1, size(v)
-        if (solve%equation(d) > 0 .and. equations%dofs%quantity(d) == q) &
+        if (solve%equation(d) > 0 .and. equations%dofs%quantity(d) == q .and. .not. apart(d)) &
           norm = norm + merge(lever*v(d), v(d), equations%dofs%is_angle(d))**2
       end do
     end associate

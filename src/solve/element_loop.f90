@@ -62,7 +62,7 @@ contains
         call timers%add(row%effect, timer)
         call timers%start(timer)
         call advance_drivers(scene, laws, solution, now, instant%time, instant%reach, g, drivers)
-        if (instant%tangent) call fill_slopes(scene, laws, solution, now, instant%dt/instant%share, g, drivers)
+        if (instant%tangent) call fill_slopes(scene, laws, solution, now, instant, g, drivers)
         nelem = size(group%connectivity, 2)
         ndof = size(dofs%groups(g)%dof, 1)
         allocate (reports((nelem + block_size - 1)/block_size))

@@ -12,6 +12,11 @@
 !> The flows K e are those of the elements, by their difference along a small part of e. So latent heat and numbers by temperature
 !> are as in the step; dies with a heat capacity of their own have errors as nodes do. (Global errors by the linearised equation
 !> with the local ones as its sources: R.D. Skeel, Thirteen ways to estimate global error, Numer. Math. 48 (1986) 1-20.)
+!>
+!> Where points have kinetics, phases err too, dz, and with them latent heat and conductivity: what has come too late is made up
+!> for. There d0 is what the content takes up less from a start with the errors of temperatures and phases to the same
+!> temperatures at the end (kinetics_error), less dt times what flows more by the phases that are left of these errors; dz1 is
+!> what the points make of all errors, and what the step errs in phases itself.
 module heat_error
   use corrections, only: solve_correction
   use elem_api, only: report_t
@@ -20,6 +25,8 @@ module heat_error
   use external_loads, only: external_forces
   use fields, only: find_field
   use kinds, only: wp
+  use kinetics_error, only: content_beside, knows_phases, path_piece_t
+  use path_record, only: state_error_t
   use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t
@@ -35,7 +42,7 @@ module heat_error
 contains
 
   !> Error of a step, and what it makes of those before it.
-  subroutine estimate_error(scene, equations, solution, dt, rates, after, two_stages, outcome, at_hand)
+  subroutine estimate_error(scene, equations, solution, dt, rates, after, two_stages, whole, outcome, at_hand)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -43,6 +50,7 @@ contains
     real(wp), intent(in) :: rates(:)   !! (ndof) error of the heat contents over the length that the matrix divides them by [power]
     real(wp), intent(in) :: after(:)   !! (ndof) flows at the end of the step [power]
     logical, intent(in) :: two_stages  !! the step is one of TR-BDF2
+    type(path_piece_t), intent(in) :: whole   !! all of the step, where points have kinetics
     type(outcome_t), intent(inout) :: outcome
     logical, intent(in), optional :: at_hand   !! by the factors of the last iteration
     real(wp) :: temperatures(size(rates)), of_temperature
@@ -51,38 +59,54 @@ contains
     if (.not. allocated(outcome%error)) then
       call measure_error(scene, equations, solution, outcome%du, temperatures, outcome%heat%error, of_temperature)
       outcome%heat%estimated = .true.
-      call carry_errors(scene, equations, solution, dt, rates, after, two_stages, outcome)
+      call carry_errors(scene, equations, solution, dt, rates, after, two_stages, whole, outcome)
     end if
     if (allocated(outcome%error)) outcome%converged = .false.
   end subroutine estimate_error
 
   !> Errors of all steps at the end of this one, by the factors at hand.
-  subroutine carry_errors(scene, equations, solution, dt, rates, after, two_stages, outcome)
+  subroutine carry_errors(scene, equations, solution, dt, rates, after, two_stages, whole, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt                  !! [time]
     real(wp), intent(in) :: rates(:), after(:)  !! (ndof) as those of estimate_error [power]
     logical, intent(in) :: two_stages
+    type(path_piece_t), intent(in) :: whole
     type(outcome_t), intent(inout) :: outcome
-    real(wp), dimension(size(rates)) :: heat, middle, temperatures
+    real(wp), dimension(size(rates)) :: heat, middle, temperatures, before, taken
+    type(state_error_t), dimension(size(scene%groups)) :: none, phases
     real(wp) :: length, mean_over, unused
+    logical :: touched(size(rates)), follows
 
     length = merge(diagonal, 1.0_wp, two_stages)*dt
     mean_over = merge(0.0_wp, dt, two_stages)
     heat = 0
+    before = 0
     call take(equations, find_field(scene%fields, 'temperature'), solution%heat%content_error, heat)
     call take(equations, find_field(scene%fields, 'die_temperature'), solution%heat%die_error, heat)
+    call take(equations, find_field(scene%fields, 'temperature'), solution%heat%temperature_error, before)
+    if (knows_phases(whole) .and. any(abs(before) > 0)) then
+      temperatures = 0
+      call content_beside(scene, equations, solution, dt, outcome%du, before, temperatures, small, whole, taken, phases, touched, &
+                          follows)
+      if (follows) heat = merge(-taken - dt*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, &
+                                                     phases), heat, touched)
+    end if
     if (two_stages .and. any(abs(heat) > 0)) then
       call solve_correction(equations, 2*heat/length, temperatures, outcome%error, at_hand=.true.)
       if (allocated(outcome%error)) return
-      middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over)
+      middle = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, none)
       heat = heat + (weight/diagonal)*(middle - heat)
     end if
     heat = heat + length*rates
     call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
-    heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over)
+    if (knows_phases(whole)) then
+      call content_beside(scene, equations, solution, dt, outcome%du, before, temperatures, small, whole, taken, phases, touched, &
+                          follows)
+    end if
+    heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, phases)
     call measure_error(scene, equations, solution, outcome%du, temperatures, unused, outcome%heat%error_now)
     where (equations%solves(equations%now)%equation == 0) heat = 0
     outcome%heat%content_error = solution%heat%content_error
@@ -91,7 +115,24 @@ contains
     call leave(equations, find_field(scene%fields, 'temperature'), heat, outcome%heat%content_error)
     call leave(equations, find_field(scene%fields, 'die_temperature'), heat, outcome%heat%die_error)
     call leave(equations, find_field(scene%fields, 'temperature'), temperatures, outcome%heat%temperature_error)
+    if (.not. allocated(outcome%heat%phases)) then
+      outcome%heat%phases = phases
+    else
+      outcome%heat%phases = sum_of(phases, outcome%heat%phases)
+    end if
   end subroutine carry_errors
+
+  !> Errors that have come of those before, and others.
+  pure function sum_of(errors, others) result(both)
+    type(state_error_t), intent(in) :: errors(:), others(:)   !! (ngroup)
+    type(state_error_t) :: both(size(errors))                 !! (ngroup)
+    integer :: g
+
+    both = others
+    do g = 1, size(errors)
+      if (allocated(errors(g)%value) .and. allocated(others(g)%value)) both(g)%value = errors(g)%value + others(g)%value
+    end do
+  end function sum_of
 
   !> Errors at the places of a field as those of its unknowns, where these are solved for.
   pure subroutine take(equations, field, at_places, heat)
@@ -123,17 +164,28 @@ contains
     end do
   end subroutine leave
 
-  !> Flows out of the nodes that come with a small change of the temperatures, at the end of the step.
-  function flows_of(scene, equations, solution, dt, du, after, temperatures, mean_over) result(g)
+  !> Flows out of the nodes that come with a small change of the temperatures, and of the phases, at the end of the step.
+  function flows_of(scene, equations, solution, dt, du, after, temperatures, mean_over, phases) result(g)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt
     real(wp), intent(in) :: du(:), after(:), temperatures(:)   !! (ndof) motion, its flows [power], the change [temperature]
     real(wp), intent(in) :: mean_over   !! as of flows [time]
+    type(state_error_t), intent(in) :: phases(:)   !! (ngroup)
     real(wp) :: g(size(du))   !! [power]
+    type(state_error_t) :: trial(size(phases))
+    integer :: k
 
+    do k = 1, size(phases)
+      if (.not. allocated(phases(k)%value)) cycle
+      trial(k)%value = solution%groups(k)%trial
+      solution%groups(k)%trial = trial(k)%value + small*phases(k)%value
+    end do
     call flows(scene, equations, solution, dt, du + small*temperatures, g, mean_over=mean_over)
+    do k = 1, size(phases)
+      if (allocated(trial(k)%value)) solution%groups(k)%trial = trial(k)%value
+    end do
     g = (g - after)/small
   end function flows_of
 

@@ -10,6 +10,7 @@ module heat_in_system
   use heat_error, only: estimate_error, flows
   use heat_stages, only: evaluation_t, judge, keep_evaluation, return_to
   use kinds, only: wp
+  use kinetics_error, only: keep_piece, path_piece_t
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
   use step_outcome, only: outcome_t
@@ -30,6 +31,7 @@ contains
     real(wp), intent(in) :: dt   !! [time]
     type(outcome_t), intent(inout) :: outcome
     type(evaluation_t) :: kept
+    type(path_piece_t) :: whole
     type(group_state_t), allocatable :: states(:)
     logical, allocatable :: active(:), is_own(:)
     real(wp), dimension(equations%dofs%ndof) :: rest, before, after
@@ -47,7 +49,8 @@ contains
     rest = 0
     call flows(scene, equations, solution, 0.0_wp, rest, before, mean_over=dt)
     call flows(scene, equations, solution, dt, outcome%du, after, mean_over=dt)
-    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), after, .false., outcome, &
+    call keep_piece(scene, equations, solution, dt, kept%element_force, whole)
+    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), after, .false., whole, outcome, &
                         at_hand=outcome%iterations > 0)
     equations%solves(s)%active = active
     equations%solves(s)%is_own = is_own

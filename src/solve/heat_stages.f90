@@ -134,6 +134,7 @@ contains
     logical, intent(in), optional :: go_on
     real(wp), dimension(equations%dofs%ndof) :: rest, before, after
     type(evaluation_t) :: kept
+    type(path_piece_t) :: whole
 
     if (.not. (scene%strategy%scheme == scheme_tr_bdf2 .or. scene%strategy%theta >= 1)) then
       call solve_step(scene, equations, solution, dt, outcome, given=given, go_on=go_on)
@@ -145,7 +146,8 @@ contains
     if (.not. outcome%converged) return
     call keep_evaluation(equations, kept)
     call flows(scene, equations, solution, dt, outcome%du, after, mean_over=dt)
-    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), after, .false., outcome, &
+    call keep_piece(scene, equations, solution, dt, kept%element_force, whole)
+    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), after, .false., whole, outcome, &
                         at_hand=.not. scene%strategy%time_tolerance > 0 .and. outcome%iterations > 0)
     call return_to(kept, equations)
   end subroutine solve_one_stage
@@ -202,7 +204,8 @@ contains
     call take_passed(scene, equations, passed, kept%element_force)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     kept%force = merge(external + diagonal*(kept%force + left - external), kept%force, equations%solves(equations%now)%is_own)
-    call estimate_error(scene, equations, solution, dt, (matmul(g, error_weights) + heat/dt)/diagonal, g(:, 2), .true., outcome)
+    call estimate_error(scene, equations, solution, dt, (matmul(g, error_weights) + heat/dt)/diagonal, g(:, 2), .true., whole, &
+                        outcome)
     call return_to(kept, equations)
   end subroutine solve_two_stages
 

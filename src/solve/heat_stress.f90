@@ -44,8 +44,8 @@ contains
     call take_turn(equations, displacement_field)
     ! the books want the element forces of the step
     element_force = equations%buffers%force
-    call follow_heat(scene, equations, solution, active, dt, small, outcome, warmth, done)
-    if (done .and. warmth%any) call compare()
+    call follow_heat(scene, equations, solution, active, small, outcome, warmth)
+    if (warmth%any) call compare()
     equations%buffers%force = element_force
     if (.not. allocated(outcome%error)) return
     ! there is no estimate then

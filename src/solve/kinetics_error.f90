@@ -7,6 +7,9 @@
 !> 1 - s^3 - (1 - s)^3 (as in step doubling: E. Hairer, S.P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 1993,
 !> II.4). Heat that is released too late or too early counts as an error of the heat content. Beside the error of implicit Euler
 !> this one is of higher order.
+!>
+!> Errors of phases are carried on from step to step with those of the temperatures (heat_error): the points make the step once more
+!> from phases and temperatures with a small share of theirs. So a phase that is behind catches up, as its kinetics say.
 module kinetics_error
   use drivers, only: drivers_of_half, drivers_t
   use elem_api, only: block_done, instant_t, report_t
@@ -20,7 +23,7 @@ module kinetics_error
   use step_instants, only: make_instant
   implicit none
   private
-  public :: content_error_of_path, keep_piece, path_piece_t
+  public :: content_beside, content_error_of_path, keep_piece, knows_phases, path_piece_t
 
   !> A piece of a step.
   type :: path_piece_t
@@ -118,6 +121,85 @@ contains
       if (active(g)) solution%groups(g) = whole%groups(g)
     end do
   end subroutine content_error_of_path
+
+  !> The phases of a step are known, so that errors of them can be carried on.
+  pure function knows_phases(piece) result(yes)
+    type(path_piece_t), intent(in) :: piece   !! all of the step
+    logical :: yes
+
+    yes = allocated(piece%heat)
+  end function knows_phases
+
+  !> What the heat content takes up more in a step, and what phases have more at its end, for errors at its start and of the
+  !> temperatures at its end. `touched` are the unknowns of points with kinetics. Element forces and states are kept.
+  subroutine content_beside(scene, equations, solution, dt, du, before, after, share, whole, heat, phases, touched, done)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(in) :: solution       !! errors of the phases at the start of the step are in its groups
+    real(wp), intent(in) :: dt                     !! [time]
+    real(wp), intent(in) :: du(:)                  !! (ndof) motion of the step [unknown]
+    real(wp), intent(in) :: before(:), after(:)    !! (ndof) errors of the temperatures at both ends [temperature]
+    real(wp), intent(in) :: share                  !! of the errors, so small that all is linear
+    type(path_piece_t), intent(in) :: whole        !! all of the step
+    real(wp), intent(out) :: heat(:)               !! (ndof) [energy]
+    type(state_error_t), intent(out) :: phases(:)  !! (ngroup)
+    logical, intent(out) :: touched(:)             !! (ndof)
+    logical, intent(out) :: done                   !! false where the step cannot be made from there
+    type(solution_t) :: other
+    type(drivers_t), allocatable :: drivers(:)
+    type(instant_t) :: instant
+    type(report_t) :: report
+    real(wp) :: element_force(size(equations%buffers%force)), magnitude(size(du)), none(0, 0)
+    logical :: holds(size(scene%groups)), active(size(scene%groups))
+    integer :: g, e
+
+    heat = 0
+    touched = .false.
+    holds = has_kinetics(scene, equations)
+    active = equations%solves(equations%now)%active .and. has_heat_law(scene, equations)
+    other = solution
+    do g = 1, size(holds)
+      if (.not. holds(g)) cycle
+      other%groups(g)%committed = other%groups(g)%committed + share*solution%groups(g)%error
+      associate (dof => equations%dofs%groups(g)%dof)
+        do e = 1, size(dof, 2)
+          touched(dof(:, e)) = .true.
+        end do
+      end associate
+    end do
+    allocate (drivers, source=equations%drivers)
+    drivers%vary = .false.
+    call make_instant(scene, equations, other, dt, du, .false., instant)
+    instant%values = instant%values + share*before
+    instant%flow%n = 0
+    element_force = equations%buffers%force
+    associate (solve => equations%solves(equations%now), buffers => equations%buffers)
+      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, solve%pattern, &
+                        instant, du + share*(after - before), none, other, drivers, buffers, equations%timers, report)
+      done = report%status == block_done
+      if (done) then
+        buffers%force = merge((instant%dt*buffers%force - whole%heat)/share, 0.0_wp, of_groups(equations, active))
+        call gather_forces(solve%pattern, buffers, solve%is_own, heat, magnitude)
+        do g = 1, size(holds)
+          if (holds(g)) phases(g)%value = (other%groups(g)%trial - whole%groups(g)%trial)/share
+        end do
+      end if
+      buffers%force = element_force
+    end associate
+  end subroutine content_beside
+
+  !> Groups that conduct heat (ngroup).
+  pure function has_heat_law(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes(size(scene%groups))
+    integer :: g
+
+    yes = .false.
+    do g = 1, size(yes)
+      if (scene%groups(g)%material > 0) yes(g) = equations%laws(scene%materials(scene%groups(g)%material)%law_id)%kind == heat_law
+    end do
+  end function has_heat_law
 
   !> Element forces that are of these groups.
   pure function of_groups(equations, active) result(yes)

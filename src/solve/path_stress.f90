@@ -65,9 +65,8 @@ contains
     logical :: done
 
     outcome%path%error = solution%path%error
-    call follow_heat(scene, equations, solution, active, dt, small, outcome, warmth, done)
+    call follow_heat(scene, equations, solution, active, small, outcome, warmth)
     outcome%path%warm = warmth%any
-    if (.not. done) return
     outcome%path%known = .not. (any_error(solution, active) .or. warmth%any &
                                 .or. max(outcome%path%motion_error, abs(outcome%path%stress_error)) > 0)
     if (outcome%path%known) return
@@ -143,14 +142,13 @@ contains
     type(warmth_t) :: warmth
     type(solution_t) :: other
     real(wp) :: element_force(size(equations%buffers%force))
-    logical :: done
 
     ! the books want the element forces of the step
     element_force = equations%buffers%force
-    call follow_heat(scene, equations, solution, active, dt, small, outcome, warmth, done)
+    call follow_heat(scene, equations, solution, active, small, outcome, warmth)
     outcome%path%warm = warmth%any
-    outcome%path%known = done .and. .not. (any_error(solution, active) .or. warmth%any)
-    if (done .and. .not. outcome%path%known) then
+    outcome%path%known = .not. (any_error(solution, active) .or. warmth%any)
+    if (.not. outcome%path%known) then
       call start_with_errors(equations, solution, active, warmth, none, 0.0_wp, other, errors)
       call advance_beside(scene, equations, active, warmth%drivers, outcome%du + small*warmth%change, dt, other, outcome%path%known)
       if (outcome%path%known) then

@@ -9,6 +9,8 @@ usage: run_heat_contact.py [-v] [-k]
 - `round`: the same of a quarter of a tube on a round die, and of two tubes with sides of other lengths: curves that are drawn as one are
   closed, however they are cut; a die the wrong way round, one beside the sides and one too rough are told.
 - `gap`: steady, across a gap by convection, a film of gas and radiation: the root of the balance.
+- `opens`: two blocks part while heat passes, across a gap that opens, by a film of gas and radiation: the equation of their two temperatures by
+  Runge and Kutta; TR-BDF2 is of second order, with what contact conducts at its instants, and implicit Euler tells its error.
 - `bore`: steady, across the wide gap between a tube and the bore around it by radiation: the area is that of the sides named.
 - `half`: two half spaces brought together (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 2.7 and 2.15): without resistance
   T = (b1 T1 + b2 T2)/(b1 + b2), b = sqrt(k rho c), at all times; with h T + (T1 - T) exp(g^2 t) erfc(g sqrt(t)), g = h (b1 + b2)/(b1 b2).
@@ -27,6 +29,7 @@ usage: run_heat_contact.py [-v] [-k]
 - `layer`: a hot billet presses on a cold tool of few elements: new meshes make no heat of the steep temperatures at its face.
 """
 import glob
+import json
 import math
 import os
 import re
@@ -148,6 +151,70 @@ def gap(checks):
                   + "END\n")
         if run.ok:
             checks.small(abs(run.history["low"][-1] - up), 1e-7*up, f"{run.name}: {up:.4f}")
+
+
+OPENS = """TITLE  Two blocks that part
+STATE  PLSTN
+KINEM  LOG
+BLOCK  a PL8LS 4 e
+   0. 0.   10. 0.   10. 5.   0. 5.
+   1 1.   1 1.
+BLOCK  b PL8LS 4 e
+   0. 5.   10. 5.   10. 10.   0. 10.
+   1 1.   1 1.
+LAW    e ELA
+   200000. 0.3
+LAW    k COUL2D
+   PENETR 1.E-3   PHI 0.
+LAW    m HEAT
+   30000. 4.5
+ADDEL  a PL8TM m
+ADDEL  b PL8TM m
+DIE    d SIDES a 3
+CNT2D  b 1 d k
+COU2DC b 1 d H 2. EPS 0.6 SIGMA 5.67E-11 ZERO 273.15 REACH 5.
+   GAP    0. 1.   0.1 0.5   0.5 0.1   2. 0.
+START  T 800. a
+START  T 20. b
+FIXED  a 1 XY
+FIXED  b 3 X
+LIC    w
+   0. 0.   6. 2.
+MOVE   b 3 Y w
+SOLVE  CONVERGE
+{theta}STRAT  0.01 1.E-6 {step} 20 3
+NORMS  FORCE 1.E-6
+STOP   6.
+PROBE  t NODE T 5. 0.
+END
+"""
+
+
+def opens(checks):
+    """The hotter block at the end, against the equation; the error that implicit Euler tells."""
+    def rate(time, hot, cold):
+        gap_now = time/3
+        share = np.interp(gap_now, (0, 0.1, 0.5, 2), (1, 0.5, 0.1, 0))
+        return (2*share*(hot - cold) + 0.6*5.67e-11*((hot + 273.15)**4 - (cold + 273.15)**4))/(4.5*5)
+    hot, cold, n = 800.0, 20.0, 2000
+    for k in range(n):   # what one loses the other gains: one equation by the classical rule
+        dt, first = 6/n, rate(6*k/n, hot, cold)
+        second = rate(6*(k + 0.5)/n, hot - 0.5*dt*first, cold + 0.5*dt*first)
+        third = rate(6*(k + 0.5)/n, hot - 0.5*dt*second, cold + 0.5*dt*second)
+        change = dt*(first + 2*second + 2*third + rate(6*(k + 1)/n, hot - dt*third, cold + dt*third))/6
+        hot, cold = hot - change, cold + change
+    errors = {}
+    for name, theta, step in (("Euler", "", 0.1), ("TR-BDF2", "THETA  TRBDF2\n", 0.2), ("TR-BDF2", "THETA  TRBDF2\n", 0.1)):
+        run = Run(checks, f"opens-{name}-{step:g}", OPENS.format(theta=theta, step=step))
+        if not run.ok:
+            return
+        errors[name, step] = run.history["t"][-1] - hot
+        if name == "Euler":
+            with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+                told = json.load(file)["accuracy"]["heat"]["end"]
+            checks.that(0.7 < told/abs(errors[name, step]) < 1.4, "opens: what implicit Euler tells", (told, errors[name, step]))
+    ratio = errors["TR-BDF2", 0.2]/errors["TR-BDF2", 0.1]
+    checks.that(2.8 < ratio < 6 and abs(errors["TR-BDF2", 0.1]) < 0.15*abs(errors["Euler", 0.1]), "opens: second order", (ratio, errors))
 
 
 def half_spaces(checks):
@@ -559,6 +626,7 @@ def main():
     round_faces(checks)
     gap(checks)
     bore(checks)
+    opens(checks)
     half_spaces(checks)
     shock(checks)
     slide(checks)

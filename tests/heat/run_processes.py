@@ -408,6 +408,14 @@ def told(checks):
         if run.ok:
             checks.that(any("-273.15 for a deck in kelvin" in line["text"] for line in summary(run)["warnings"]) == (zero > 200),
                         f"ZERO {zero}: told", summary(run)["warnings"])
+    # kelvin without ZERO: surroundings of 293 are a room, unless something is colder
+    for off, cold, told in ((273.15, "", True), (0., "", False), (273.15, "IMPOS bar 4 T low 1.\nLIC low\n   0. 20.\nCONVE bar 3 H 1. TS 100.\n", False)):
+        run = Run(checks, f"kelvin-{off:g}-{len(cold)}", "TITLE kelvin\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW hot META\n   STEEL soft.met s\n   ENERGY 1.\nSTART T {900 + off}\nCONVE bar 2 H 1. TS {20 + off}\n{cold}"
+                  "STRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"]]
+            checks.that(["are 293.1 degC by ZERO 0 of LAW hot" in line for line in lines].count(True) == told, f"kelvin {off:g}, {len(cold)}: told", lines)
     # a steel in degC by ZERO of its law; what begins as martensite is not told to begin below Ms
     for start, zero, cold in ((-300, 0., True), (-200, 0., False), (20, -300., True), (20, -273.15, False)):
         run = Run(checks, f"begins-{start}-{zero:g}", "TITLE begins\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
@@ -421,7 +429,7 @@ def told(checks):
     for steel_zero, zero, apart in ((0., 273.15, False), (0., 273., False), (-273.15, 0., False), (-273.15, 273.15, True), (0., 0., True)):
         run = Run(checks, f"zeros{steel_zero:g}{zero:g}", "TITLE zeros\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
                   f"   2 1.   2 1.\nLAW hot META\n   STEEL soft.met s\n   ENERGY 1. ZERO {steel_zero}\nSTART T 1200.\n"
-                  f"RADIA bar 2 EPS 0.8 SIGMA 5.67E-11 ZERO {zero} TS 300.\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+                  f"RADIA bar 2 EPS 0.8 SIGMA 5.67E-11 ZERO {zero} TS 320.\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
         if run.ok:
             lines = [line["text"] for line in summary(run)["warnings"]]
             checks.that(["absolute zero is" in line and "by bar.2/RADIA" in line and "by LAW hot" in line for line in lines] == [True]*apart,

@@ -3,6 +3,7 @@
 same steps and iterations up to 60 % and gives the same forces, to 1e-9.
 
 usage: run_units.py [-v] [-k]       -v prints every check, -k keeps the results
+`section`: a bar that is bent across between sections that are free, of thickness 1 in whatever unit: what is found does not depend on it.
 The `binary` units are powers of two of mm, MPa and s: there even the round-off is the same, so the whole history must be, bit by bit.
 In the others the last bits differ; that they stay last bits while the side folds onto the die shows that no decision hangs on them.
 """
@@ -49,6 +50,30 @@ SLIDING = {"end": "billet 3 upper 2 rough", "rough": "AKP {P:60000}   AKTAU {P:6
            "more": "PRES2D billet 2 2 {S:30} squeeze\nBFORC  billet Y {P:-0.4} squeeze\nCENTR  billet {D:8E-9} {W:1E4} squeeze\nLIC    squeeze\n   0. 0.   {T:1} 1.\n"}
 
 
+BAR = """TITLE  A long bar bent and pressed across, in {name}
+STATE  GPLSTN
+SECTN  E FREE
+SECTN  KX FREE
+SECTN  KY FREE
+KINEM  LOG
+BLOCK  bar PL8LS 4 steel
+   0. 0.   {L:20} 0.   {L:20} {L:10}   0. {L:10}
+   4 1.   3 1.
+LAW    steel EPLA
+   {S:200000} 0.3
+   LINEAR {S:250} {S:500}
+LIC    press
+   0. 0.   {T:1} 1.   {T:1.5} 0.
+MOVE   bar 2 Y press {L:-0.5}
+PRES2D bar 3 2 {S:90} press
+FIXED  bar 4 XY
+STRAT  {T:0.1} {T:1e-5} {T:0.1}   5 3
+STOP   {T:1.5}
+NORMS  PATH 0 RATE 0
+END
+"""
+
+
 class Scaled:
     """A quantity to be written in other units: `{L:10}` is 10 mm."""
 
@@ -68,6 +93,26 @@ def scaled_deck(name, scene, nx, ny):
     text = DECK.format(name=name, stick=STICK, nx=nx, ny=ny, **units, **parts)
     # A law that is not used is refused.
     return text if "stick" in parts["end"] else text.replace(STICK, "")
+
+
+def section(checks):
+    """A section of generalised plane strain: iterations, axial strain and curvature."""
+    runs = {}
+    for name in ("mm-N-MPa", "m-N-Pa", "in-lbf-psi"):
+        length, stress, time = UNITS[name]
+        where = checks.path(f"section-{name}")
+        deck = write(where + ".lag", BAR.format(name=name, L=Scaled(length), S=Scaled(stress), T=Scaled(time)))
+        result = run([deck, "--out", where, "--threads", "1"])
+        if checks.that(result.returncode == DONE, f"section in {name}: done", said(result)):
+            runs[name] = history(where)
+    if len(runs) < 3:
+        return
+    one = runs.pop("mm-N-MPa")
+    for name, two in runs.items():
+        checks.that(one["iterations"] == two["iterations"], f"section in {name}: the same iterations", (one["iterations"], two["iterations"]))
+        for column, unit in (("section_strain", 1.0), ("section_curvature_x", 1/UNITS[name][0])):
+            worst = max(abs(a - b*unit) for a, b in zip(one[column], two[column]))/max(abs(a) for a in one[column])
+            checks.that(worst <= TOLERANCE, f"section in {name}: {column}", f"{worst:.1e} apart")
 
 
 def compare(checks, what, one, two, name):
@@ -111,6 +156,7 @@ def main():
         for name, table in runs.items():
             if name != "mm-N-MPa" and "mm-N-MPa" in runs:
                 compare(checks, f"{scene_name} {nx}x{ny} in {name}", runs["mm-N-MPa"], table, name)
+    section(checks)
     checks.end()
 
 

@@ -25,6 +25,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.p
 from patch_support import LAGAMINE, SOURCE, STRESS, Checks, Run, np  # noqa: E402
 
 CARRIED = (0.5, 3.0)     # told over true errors of the stress
+HEATED = (0.5, 2.0)      # the same where temperatures make most of them
 ALLOWED = 0.01           # of the necking force at 5 mm, and of the relaxed stress
 FACTOR = 3.0             # of an estimate, up and down
 WIDE = "NORMS  PATH 0.9 RATE 0.9\n"
@@ -189,6 +190,7 @@ QUENCHES = {
     "no phases": ({"steel": f"{STEEL} stable", "own": "TIME 1.", "exchange": 3., "end": 12.}, 0.5),
     "phases of the heat": ({"steel": f"{HARDENING} hardening", "own": "", "exchange": 1., "end": 24.}, 1.0),
     "phases of its own": ({"steel": f"{HARDENING} hardening", "own": "TIME 1.", "exchange": 1., "end": 24.}, 1.0),
+    "cold, in air": ({"steel": f"{HARDENING} hardening", "own": "", "exchange": 0.3, "end": 300.}, 2.0),
 }
 
 # A sheet, free: it has no stress, through martensite and its plasticity too.
@@ -329,9 +331,9 @@ def energy(stress):
     return np.sqrt((1.3*(xx**2 + yy**2 + zz**2 + 2*xy**2) - 0.3*(xx + yy + zz)**2).sum())
 
 
-def compare(checks, title, name, deck, words, runs, shortest, exactly):
+def compare(checks, title, name, deck, words, runs, shortest, exactly, bounds):
     """Told errors of the stress at the end of runs of a deck (length of the step, cards more), against what they differ by from the run
-    in the shortest steps, with cards of its own."""
+    in the shortest steps, with cards of its own; the ratio of both is within bounds."""
     reference = Run(checks, f"{title}-fine", deck.format(step=shortest, more=exactly, **words))
     if not reference.ok:
         return
@@ -345,7 +347,7 @@ def compare(checks, title, name, deck, words, runs, shortest, exactly):
         told, true = whole["accuracy"]["path"], 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
         ratio = told["stress_pct"]/true
         print(f"{name:22s} {whole['steps']:6d} {true:9.4f} {told['stress_pct']:9.4f} {ratio:11.2f}")
-        checks.that("stress_known" not in told and CARRIED[0] <= ratio <= CARRIED[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
+        checks.that("stress_known" not in told and bounds[0] <= ratio <= bounds[1], f"{name}, {whole['steps']} steps: told error of the stress", ratio)
 
 
 def carried(checks):
@@ -354,14 +356,14 @@ def carried(checks):
     heat = Run(checks, "heat", COOLED.format(element="PL8TM", order=" BILINEAR", law=HEAT, more="THETA  TRBDF2\n", first=0.01, step=0.25))
     cooled = {"cylinder, cools": (COOLED, {"element": "PL8LS", "order": "", "law": HOT, "first": 0.02}, 1.0)} if heat.ok else {}
     for name, (deck, words, step) in {**WAYS, **cooled}.items():
-        compare(checks, "carried", name, deck, words, ((step, WIDE), (step/2, WIDE), (step, "")), step/16, OFF)
+        compare(checks, "carried", name, deck, words, ((step, WIDE), (step/2, WIDE), (step, "")), step/16, OFF, CARRIED)
 
 
 def heated(checks):
     """Errors of the stress at the end, with those of temperatures and phases, against those of short steps of TR-BDF2."""
     print(f"\n{'heated':22s} {'steps':>6s} {'error %':>9s} {'told %':>9s} {'effectivity':>11s}")
     for name, (words, step) in QUENCHES.items():
-        compare(checks, "heated", name, QUENCHED, words, ((step, WIDE), (step/4, WIDE), (step, "")), step/16, "THETA  TRBDF2\n" + OFF)
+        compare(checks, "heated", name, QUENCHED, words, ((step, WIDE), (step/4, WIDE), (step, "")), step/16, "THETA  TRBDF2\n" + OFF, HEATED)
 
 
 def elastic(checks):
@@ -381,7 +383,7 @@ def elastic(checks):
             told = json.load(file)["accuracy"]["heat"].get("stress_pct", 0)
         true = 100*energy(run.state("part", *STRESS) - truth)/energy(truth)
         print(f"{'elastic':22s} {len(run.history['step']):6d} {true:9.4f} {told:9.4f} {told/true:11.2f}")
-        checks.that(CARRIED[0] <= told/true <= CARRIED[1], f"elastic, {step:g} s, {more.split()[-1:]}: told error of the stress", told/true)
+        checks.that(HEATED[0] <= told/true <= HEATED[1], f"elastic, {step:g} s, {more.split()[-1:]}: told error of the stress", told/true)
 
 
 def tight(checks):
