@@ -61,13 +61,13 @@ contains
     logical, intent(in) :: axisym
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: xi(:)                      !! (npoint) [-]
-    integer, intent(in) :: pieces(:)                   !! of the die, those whose nodes are among the unknowns
+    integer, intent(in) :: pieces(:)                   !! (npiece) of the die, those whose nodes are among the unknowns
     real(wp), intent(in) :: x(:, :)                    !! (2, nnode) at the start of the step [length]
-    real(wp), intent(in) :: du(:)                      !! motion in the step [unknown]
+    real(wp), intent(in) :: du(:)                      !! (nunknown) motion in the step [unknown]
     real(wp), intent(in) :: committed(:, :)            !! (nstate, npoint) [unit of each component]
     real(wp), intent(inout) :: trial(:, :)             !! (nstate, npoint) [unit of each component]
-    real(wp), intent(inout) :: force(:)                !! [force]
-    real(wp), intent(inout) :: stiffness(:, :)         !! [force/unknown]
+    real(wp), intent(inout) :: force(:)                !! (nunknown) [force]
+    real(wp), intent(inout) :: stiffness(:, :)         !! (nunknown, nunknown) [force/unknown]
     type(report_t), intent(inout) :: report
     type(corner_t) :: corner
     type(edge_piece_t) :: piece

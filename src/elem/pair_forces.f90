@@ -10,10 +10,10 @@ contains
 
   !> The force q on the side met, and its opposite on the point's side.
   pure subroutine spread_force(share, q, place, force)
-    real(wp), intent(in) :: share(6)   !! of the nodes of the point's side (negative), and of the side met
-    real(wp), intent(in) :: q(2)
-    integer, intent(in) :: place(:)
-    real(wp), intent(inout) :: force(:)
+    real(wp), intent(in) :: share(6)        !! of the nodes of the point's side (negative), and of the side met [-]
+    real(wp), intent(in) :: q(2)            !! [force]
+    integer, intent(in) :: place(:)         !! (nunknown) in the element's rows
+    real(wp), intent(inout) :: force(:)     !! (ndof) of the element [force]
     integer :: i
 
     do i = 1, 6
@@ -23,9 +23,10 @@ contains
   end subroutine spread_force
 
   pure subroutine spread_matrix(share, dq, place, stiffness)
-    real(wp), intent(in) :: share(6), dq(:, :)
-    integer, intent(in) :: place(:)
-    real(wp), intent(inout) :: stiffness(:, :)
+    real(wp), intent(in) :: share(6)               !! as in spread_force [-]
+    real(wp), intent(in) :: dq(:, :)               !! (2, nunknown) derivatives of that force [force/unknown]
+    integer, intent(in) :: place(:)                !! (nunknown) in the element's rows
+    real(wp), intent(inout) :: stiffness(:, :)     !! (ndof, ndof) of the element [force/unknown]
     integer :: i, j, c
 
     do j = 1, size(place)

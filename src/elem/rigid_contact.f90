@@ -173,9 +173,10 @@ contains
   !> Depth, slip and turn of the normal, with their derivatives.
   pure subroutine meet(side, phi, dphi, closest, lever, dlever, meeting, drift)
     type(side_t), intent(in) :: side
-    real(wp), intent(in) :: phi(3), dphi(3)
+    real(wp), intent(in) :: phi(3), dphi(3)   !! [-]
     type(closest_point_t), intent(in) :: closest
-    real(wp), intent(in) :: lever(2), dlever(2, ndof)   !! from the pilot to the point
+    real(wp), intent(in) :: lever(2)          !! from the pilot to the point [length]
+    real(wp), intent(in) :: dlever(2, ndof)   !! derivatives of it [length/unknown]
     type(meeting_t), intent(out) :: meeting
     type(drift_t), intent(in), optional :: drift
     real(wp) :: n(2), t(2), turn(2), way(2), relative(2, ndof), dway(2, ndof), dt(2, ndof), rotation
