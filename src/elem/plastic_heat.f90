@@ -175,7 +175,7 @@ contains
   subroutine add_rows_of_heat(layout, rule, weight, nx, ny, zz, slopes, stiffness)
     type(layout_t), intent(in) :: layout
     type(quad8_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: weight(:, :, :)                        !! (8, npoint, nelem) by the row of each temperature [volume/time]
+    real(wp), intent(in) :: weight(:, :, :)            !! (8, npoint, nelem) by the row of each temperature [volume/time]
     real(wp), intent(in) :: nx(:, :, :), ny(:, :, :)               !! (8, npoint, nelem) gradients [1/length]
     real(wp), intent(in) :: zz(:, :, :)                            !! (nmotion, npoint, nelem) d h_zz/d(motion) [1/unknown]
     real(wp), intent(in) :: slopes(:, :, :)                        !! (6, npoint, nelem) d()/dh, and by temperature
