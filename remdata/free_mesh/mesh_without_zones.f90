@@ -20,9 +20,12 @@ module mesh_without_zones
 
   !> Other sizes give another mesh, when one is of bad shape, has triangles or the mesher fails: factors of refinement; elements
   !> of twice the size that are split are quadrilaterals in any case. The last ones are for corners of a material that run out to
-  !> layers thinner than the sizes: how many elements are across them, and where rows of elements end, changes with the size.
-  real(wp), parameter :: finer_by(10) = [1.0_wp, 1.05_wp, 1.0_wp, 1.12_wp, 1.12_wp, 1.25_wp, 2.0_wp, 1.4_wp, 0.85_wp, 1.6_wp]
-  logical, parameter :: split(10) = [.false., .false., .true., .false., .true., .true., .true., .false., .false., .false.]
+  !> layers thinner than the sizes: how many elements are across them, and where rows of elements end, changes with the size. A row
+  !> of one element across ends at such a corner well or with an element that has two sides on a straight line.
+  real(wp), parameter :: finer_by(14) = [1.0_wp, 1.05_wp, 1.0_wp, 1.12_wp, 1.12_wp, 1.25_wp, 2.0_wp, 1.4_wp, 0.85_wp, 1.6_wp, &
+                                         0.95_wp, 1.16_wp, 0.9_wp, 1.08_wp]
+  logical, parameter :: split(14) = [.false., .false., .true., .false., .true., .true., .true., .false., .false., .false., &
+                                     .true., .false., .false., .true.]
   !> Where the number of elements is limited other sizes are larger ones, by these factors at most.
   real(wp), parameter :: coarser_by = 1.25_wp
   !> Sizes for a limited number of elements are larger by this than by the number that the sizes need.

@@ -43,8 +43,8 @@ contains
     real(wp), intent(in) :: external(:)   !! (ndof) forces at the end of the step [residual]
     real(wp), intent(in) :: scale         !! size of the scene [length]
     real(wp), intent(inout) :: du(:)      !! (ndof) motion of the step [unknown]
-    real(wp), intent(out) :: seated(:)    !! (ndie) forces on those that were moved, 0 for others [force]
-    logical :: idle(size(scene%dies))
+    real(wp), intent(out) :: seated(:)    !! (ndie) forces on those that are just in touch, moved there or not, 0 for others [force]
+    logical :: idle(size(scene%dies)), in_touch_now
     real(wp), allocatable :: x(:, :)
     real(wp) :: pilot(3), push(2), way
     integer :: k
@@ -59,8 +59,8 @@ contains
       if (.not. allocated(x)) call place_nodes()
       pilot = solution%fields(pilot_field)%value(:, k)
       call add_motion(dofs%fields(pilot_field)%number(:, k), pilot)
-      call find_way(scene, x, k, pilot, push/length_of(push), longest_way*scale, way)
-      if (.not. way > 0) cycle
+      call find_way(scene, x, k, pilot, push/length_of(push), longest_way*scale, way, in_touch_now)
+      if (.not. (way > 0 .or. in_touch_now)) cycle
       seated(k) = length_of(push)
       push = way*push/length_of(push)
       call move(dofs%fields(pilot_field)%number(1:2, k), push)
@@ -117,7 +117,7 @@ contains
   end subroutine seat_dies
 
   !> How far a die goes in a direction until it is in touch with a side that faces it; 0 where it touches one now, or meets none.
-  pure subroutine find_way(scene, x, die, pilot, direction, longest, way)
+  pure subroutine find_way(scene, x, die, pilot, direction, longest, way, in_touch_now)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)        !! (2, nnode) [length]
     integer, intent(in) :: die
@@ -125,12 +125,15 @@ contains
     real(wp), intent(in) :: direction(2)   !! [-]
     real(wp), intent(in) :: longest        !! [length]
     real(wp), intent(out) :: way           !! [length]
+    logical, intent(out) :: in_touch_now   !! it touches one now
     real(wp) :: gap, side
     integer :: k
 
     way = 0
+    in_touch_now = .false.
     do k = 1, most_steps
       call find_gap(scene, x, die, pilot + [way*direction, 0.0_wp], longest, gap, side)
+      in_touch_now = k == 1 .and. gap <= touching*side
       if (gap <= touching*side) return
       way = way + gap + in_touch*side
       if (way > longest) exit
