@@ -116,9 +116,7 @@ contains
     checked = .false.
     do j = 1, nterm
       diagonal = gram(j, j)
-      do i = 1, j - 1
-        gram(j, j) = gram(j, j) - gram(j, i)**2
-      end do
+      call leave_rest(j, gram)
       if (.not. gram(j, j) > dependent*diagonal) then
         degree_end = merge(3, 1, j > 3)
         exit
@@ -130,10 +128,7 @@ contains
         end if
         checked = .true.
       end if
-      gram(j, j) = 1/sqrt(gram(j, j))
-      do i = j + 1, nterm
-        gram(i, j) = (gram(i, j) - dot_product(gram(i, :j - 1), gram(j, :j - 1)))*gram(j, j)
-      end do
+      call eliminate(j, gram)
     end do
     do j = 1, degree_end
       right(:, j) = right(:, j)*gram(j, j)
@@ -150,13 +145,36 @@ contains
     right(:, degree_end + 1:) = 0
   end subroutine solve_normal
 
+  !> What term j has for itself beside those before it, the square of Cholesky's diagonal, in its place in the matrix.
+  pure subroutine leave_rest(j, gram)
+    integer, intent(in) :: j
+    real(wp), intent(inout) :: gram(nterm, nterm)
+    integer :: i
+
+    do i = 1, j - 1
+      gram(j, j) = gram(j, j) - gram(j, i)**2
+    end do
+  end subroutine leave_rest
+
+  !> Column j of Cholesky's factor, its diagonal inverted, in place.
+  pure subroutine eliminate(j, gram)
+    integer, intent(in) :: j
+    real(wp), intent(inout) :: gram(nterm, nterm)
+    integer :: i
+
+    gram(j, j) = 1/sqrt(gram(j, j))
+    do i = j + 1, nterm
+      gram(i, j) = (gram(i, j) - dot_product(gram(i, :j - 1), gram(j, :j - 1)))*gram(j, j)
+    end do
+  end subroutine eliminate
+
   !> Points determine a quadratic polynomial: each term of the second degree keeps a share of itself beside those before it, in
   !> coordinates in which the points scatter by 1 in every direction, so that it is no matter how long a patch is and how it lies.
   pure function determine_quadratic(points) result(yes)
     real(wp), intent(in) :: points(:, :)   !! (npoint, 2) that do not lie on a line [scale]
     logical :: yes
     real(wp) :: mean(2), spread_of(2), slope, gram(nterm, nterm), t(nterm), diagonal
-    integer :: i, j, k
+    integer :: j, k
 
     mean = sum(points, 1)/size(points, 1)
     spread_of(1) = sqrt(sum((points(:, 1) - mean(1))**2)/size(points, 1))
@@ -173,15 +191,10 @@ contains
     yes = .true.
     do j = 1, nterm
       diagonal = gram(j, j)
-      do i = 1, j - 1
-        gram(j, j) = gram(j, j) - gram(j, i)**2
-      end do
+      call leave_rest(j, gram)
       yes = gram(j, j) > hardly*diagonal
       if (.not. yes) return
-      gram(j, j) = sqrt(gram(j, j))
-      do i = j + 1, nterm
-        gram(i, j) = (gram(i, j) - dot_product(gram(i, :j - 1), gram(j, :j - 1)))/gram(j, j)
-      end do
+      call eliminate(j, gram)
     end do
   end function determine_quadratic
 

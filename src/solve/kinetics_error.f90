@@ -42,13 +42,9 @@ contains
     logical :: yes(size(scene%groups))
     integer :: g
 
-    yes = .false.
+    yes = equations%solves(equations%now)%active .and. has_heat_law(scene, equations)
     do g = 1, size(yes)
-      if (scene%groups(g)%material == 0) cycle
-      associate (material => scene%materials(scene%groups(g)%material))
-        if (.not. allocated(material%steel)) cycle
-        yes(g) = equations%solves(equations%now)%active(g) .and. equations%laws(material%law_id)%kind == heat_law
-      end associate
+      if (yes(g)) yes(g) = allocated(scene%materials(scene%groups(g)%material)%steel)
     end do
   end function has_kinetics
 
