@@ -50,7 +50,7 @@ def generations_picture(view: SceneView) -> Optional[Picture]:
     if len(generations) > 12:
         places = np.unique(np.linspace(0, len(generations) - 1, 12).round().astype(int))
         generations = [generations[k] for k in places]
-    fig, panels = _grid(view, [generation.steps[0] for generation in generations], 3.0, 3.0)
+    fig, panels = _grid(view, [generation.steps[0] for generation in generations], 3.0, 3.0, 1.7)
     for panel, generation in zip(panels, generations):
         step = generation.steps[0]
         x = view.coordinates(step)
@@ -143,7 +143,7 @@ def series_picture(view: SceneView, field: str, most: int = 8) -> Optional[Pictu
     if not spans:
         return None
     scale = scale_for(min(low for low, _ in spans), max(high for _, high in spans))
-    fig, panels = _grid(view, steps, 2.05, 2.3)
+    fig, panels = _grid(view, steps, 2.05, 2.3, 1.2)
     drawn = None
     for panel, step, value in zip(panels, steps, values):
         drawn = view.field(panel, step, value, scale, small=True)
@@ -153,13 +153,16 @@ def series_picture(view: SceneView, field: str, most: int = 8) -> Optional[Pictu
                    f"{field_title(field, run.axisymmetric)} at saved steps, one scale for all", fig)
 
 
-def _grid(view: SceneView, steps: Sequence[Step], widest: float, highest: float):
-    """Small panels with one frame for all steps, dies drawn; returns figure and cells."""
+def _grid(view: SceneView, steps: Sequence[Step], widest: float, highest: float, title: float):
+    """Small panels with one frame for all steps, dies drawn, not narrower than their titles [inches]; returns figure and cells."""
     box = view.box(steps, 0.1)
     if box[1] - box[0] > FLAT * (box[3] - box[2]):      # two in a row
         widest = 2 * widest
     elif len(steps) < 5:    # these few stand in one row
         widest = min(widest, 9.2 / len(steps) - 0.25)
+    if len(steps) > 1:
+        scale = min(widest / (box[1] - box[0]), highest / (box[3] - box[2]))
+        box = (box[0], max(box[1], box[0] + min(title, widest) / scale), box[2], box[3])
     inches = view.panel(box, widest, highest)
     columns = min(len(steps), max(1, int(9.2 / (inches[0] + 0.2))))
     rows = -(-len(steps) // columns)
