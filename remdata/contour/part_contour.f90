@@ -13,15 +13,15 @@ module part_contour
   use contact_intervals, only: side_point_t
   use contact_placement, only: contour_options_t, place_contacts
   use contour_assembly, only: assemble_boundary, contact_t
-  use contour_laps, only: find_laps, lap_t
+  use contour_laps, only: lap_t
   use folded_sides, only: fold_t, open_folds, own_sides
   use contour_volume, only: shift_sides, volume_inside, volume_of_loop
   use die_closest_points, only: point_on_side
-  use errors, only: error_t, exit_bug, exit_no_convergence, fail
-  use loop_group, only: group_of_element
+  use errors, only: error_t, exit_bug, fail
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t, solid_elements
   use point_contacts, only: point_contact_t
+  use refused_laps, only: refuse_laps
   use short_die_arcs, only: drop_short_die_arcs
   use short_free_sides, only: drop_short_grounds, drop_short_sides
   use small_laps, only: cut_small_laps
@@ -151,7 +151,7 @@ contains
     report%largest_shift = maxval([0.0_wp, abs(contours%shift)])
     report%largest_move = maxval([0.0_wp, contours%largest_move])
     report%volume_error = maxval([0.0_wp, abs(contours%volume_after - contours%volume_before)/abs(contours%volume_before)])
-    call refuse_laps(scene, contours, report%laps, error)
+    call refuse_laps(scene, contours%boundary, contours%loop, contours%tags, report%laps, error)
   end subroutine build_contours
 
   !> Nodes that loops pass more than once: where two of them touch they must not separate.
@@ -315,57 +315,5 @@ contains
       end associate
     end do
   end subroutine list_limits
-
-  !> A contour that crosses itself or another one cannot be meshed.
-  subroutine refuse_laps(scene, contours, laps, error)
-    type(scene_t), intent(in) :: scene
-    type(contour_t), intent(in) :: contours(:)
-    type(lap_t), allocatable, intent(inout) :: laps(:)
-    type(error_t), allocatable, intent(out) :: error
-    type(boundary_curve_t) :: boundaries(size(contours))
-    integer, allocatable :: on_die(:, :)
-    logical, allocatable :: faces(:, :, :)
-    character(len=:), allocatable :: place
-    integer :: bodies(2), k, i, g
-
-    allocate (on_die(maxval([1, (size(contours(k)%loop%sides, 2), k=1, size(contours))]), size(contours)), source=0)
-    allocate (faces(size(scene%dies), size(on_die, 1), size(contours)), source=.false.)
-    do k = 1, size(contours)
-      boundaries(k) = contours(k)%boundary
-      do i = 1, size(contours(k)%loop%sides, 2)
-        on_die(i, k) = findloc(contours(k)%tags%on_die(:, i), .true., 1)
-        do g = 1, size(scene%groups)
-          if (scene%groups(g)%die > 0 .and. contours(k)%tags%on_group(g, i)) faces(scene%groups(g)%die, i, k) = .true.
-        end do
-      end do
-    end do
-    call find_laps(boundaries, on_die, faces, laps)
-    if (size(laps) == 0) return
-    place = 'x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2))
-    bodies = [(body_beside(laps(1)%boundaries(k), laps(1)%arcs(k)), k=1, 2)]
-    if (bodies(1) /= bodies(2)) then
-      call fail(error, exit_no_convergence, scene%groups(bodies(1))%name//' and '//scene%groups(bodies(2))%name// &
-                ' have gone through each other, at '//place//': their sides there are in no contact with each other', &
-                'name these sides of the one body in a die, DIE name SIDES place, and those of the other in its CNT2D')
-      return
-    end if
-    call fail(error, exit_no_convergence, 'the contour has '//to_text(size(laps))//' lap'//trim(merge('s', ' ', size(laps) > 1)) &
-              //', the first at '//place, &
-              'remesh earlier, before the sides fold over each other; sides of one body that meet need contact as those of two '// &
-              'bodies do, DIE name SIDES place and CNT2D place name law, those beside the mouth of a fold too')
-
-  contains
-
-    !> The body behind an arc, by its group.
-    pure function body_beside(boundary, arc) result(group)
-      integer, intent(in) :: boundary, arc
-      integer :: group
-
-      associate (elements => contours(boundary)%loop%element)
-        group = group_of_element(scene, elements(min(boundaries(boundary)%arcs(arc)%side, size(elements))))
-      end associate
-    end function body_beside
-
-  end subroutine refuse_laps
 
 end module part_contour

@@ -1,0 +1,63 @@
+!> Supports that hold straight sides against motion across them, and across them alone: mostly planes of symmetry.
+module support_planes
+  use fields, only: displacement_field
+  use kinds, only: wp
+  use scene, only: axisymmetric, scene_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: holds_plane, plane_beside
+
+  !> Distance of nodes from a straight line, and of a point that is beside one, over the length of the line.
+  real(wp), parameter :: straight = 1.0e-9_wp, beside = 1.0e-3_wp
+  character(len=*), parameter :: axes = 'xy'
+
+contains
+
+  !> The plane through a point, as `y = 0 (FIXED bar.1 Y)`; empty where there is none.
+  pure function plane_beside(scene, point) result(words)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: point(2)   !! [length]
+    character(len=:), allocatable :: words
+    integer :: c, f
+
+    words = ''
+    if (.not. allocated(scene%mesh%origin)) return
+    do f = 1, size(scene%fixations)
+      if (.not. holds_plane(scene, f)) cycle
+      c = scene%fixations(f)%component
+      associate (first => scene%mesh%origin(:, scene%fixations(f)%nodes))
+        if (abs(point(c) - first(c, 1)) > beside*(maxval(first(3 - c, :)) - minval(first(3 - c, :)))) cycle
+        words = axes(c:c)//' = '//to_text(first(c, 1), 4)//' (FIXED '//scene%fixations(f)%label//')'
+        return
+      end associate
+    end do
+  end function plane_beside
+
+  !> Does a support hold nodes on a straight line against motion across it, and across it alone? The axis is a wall already.
+  pure function holds_plane(scene, number) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: number
+    logical :: yes
+    real(wp) :: extent(2)
+    integer :: c, f
+
+    associate (one => scene%fixations(number))
+      c = one%component
+      yes = one%field == displacement_field .and. .not. abs(one%amplitude) > 0 .and. size(one%nodes) > 2
+      if (.not. yes) return
+      associate (first => scene%mesh%origin(:, one%nodes))
+        extent = maxval(first, 2) - minval(first, 2)
+        yes = extent(c) <= straight*extent(3 - c)
+        if (c == 1 .and. scene%plane_state == axisymmetric) yes = yes .and. any(abs(first(1, :)) > straight*extent(2))
+      end associate
+      do f = 1, size(scene%fixations)
+        associate (other => scene%fixations(f))
+          if (other%field /= displacement_field .or. other%component == c .or. size(other%nodes) /= size(one%nodes)) cycle
+          yes = yes .and. any(other%nodes /= one%nodes)
+        end associate
+      end do
+    end associate
+  end function holds_plane
+
+end module support_planes
