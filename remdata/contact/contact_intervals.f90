@@ -133,7 +133,8 @@ contains
           .or. (interval%to_corner(2) .and. along(side_point) > along(interval%found(2)))
   end function is_before_corner
 
-  !> Intervals of one group: each beginning is paired with the next end around the loop.
+  !> Intervals of one group: each beginning is paired with the next end around the loop. Where one interval ends and another begins
+  !> at the same point, as where a node between two sides in contact is open on one of them, the end is that of the first.
   pure subroutine pair_ends(group, number, side_at, nside, ends, list, n)
     type(group_t), intent(in) :: group
     integer, intent(in) :: number, side_at(:), nside
@@ -152,6 +153,7 @@ contains
         if (ends(j)%group /= number .or. ends(j)%begins) cycle
         side_point = side_point_of(ends(j))
         if (side_point%side == 0) cycle
+        if (coincide(side_point, from) .and. ends_another(j)) cycle
         if (along(side_point) < along(from) - coincidence_tolerance) side_point%side = side_point%side + nside
         if (to%side > 0 .and. along(side_point) >= along(to)) cycle
         to = side_point
@@ -170,6 +172,29 @@ contains
     end do
 
   contains
+
+    !> Is an interval under way as it comes to an end: is a beginning the last that is passed before it?
+    pure function ends_another(end) result(yes)
+      integer, intent(in) :: end
+      logical :: yes
+      type(side_point_t) :: before
+      real(wp) :: back, nearest
+      integer :: m
+
+      yes = .false.
+      nearest = huge(nearest)
+      do m = 1, size(ends)
+        if (ends(m)%group /= number) cycle
+        before = side_point_of(ends(m))
+        if (before%side == 0) cycle
+        back = modulo(along(side_point_of(ends(end))) - along(before), real(nside, wp))
+        if (back <= coincidence_tolerance .or. back >= nside - coincidence_tolerance) cycle
+        if (back > nearest + coincidence_tolerance) cycle
+        ! of two at the same point the beginning is the last
+        yes = ends(m)%begins .or. yes .and. back >= nearest - coincidence_tolerance
+        nearest = back
+      end do
+    end function ends_another
 
     pure function side_point_of(one) result(side_point)
       type(contact_end_t), intent(in) :: one

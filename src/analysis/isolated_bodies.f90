@@ -64,13 +64,16 @@ contains
     type(law_t), intent(in) :: laws(:)
     logical, intent(in) :: of_heat(:)    !! (ngroup) groups that conduct
     logical, intent(out) :: changes(:)   !! (nnode)
+    logical :: warms
     integer :: f, g, k
 
     changes = .false.
     f = find_field(scene%fields, 'temperature')
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%brings_heat .or. (of_heat(g) .and. makes_heat(g))) changes(pack(group%connectivity, .true.)) = .true.
+        warms = group%brings_heat
+        if (of_heat(g) .and. .not. warms) warms = makes_heat(g)
+        if (warms) changes(pack(group%connectivity, .true.)) = .true.
         if (.not. group%brings_heat .or. group%die == 0) cycle
         if (allocated(scene%dies(group%die)%nodes)) changes(pack(scene%dies(group%die)%nodes, .true.)) = .true.
       end associate

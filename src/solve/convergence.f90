@@ -144,7 +144,7 @@ contains
     do q = 1, size(equations%dofs%quantities)
       if (.not. is_solved_for(equations, q)) cycle
       motion = max(norm_of(equations, q, du), least_change(equations, fields, q))
-      norm = larger(norm, free_norm(equations, q, correction, equations%size)/motion)
+      norm = larger(norm, share_of(free_norm(equations, q, correction, equations%size), motion))
       if (.not. is_motion(equations, q)) cycle
       own = section_norm(equations, correction, equations%size, free=.true.)
       ! a section is as long as it is thick: motions count over that as those of nodes do over the mesh's size
@@ -152,6 +152,15 @@ contains
                                                fields(section_field)%value(1, 1)/equations%size*motion))
     end do
   end function relative_motion
+
+  !> A norm over another one above zero, which may be so small that their ratio is none of this kind: the largest there is, then.
+  pure function share_of(a, b) result(share)
+    real(wp), intent(in) :: a, b
+    real(wp) :: share
+
+    share = huge(share)
+    if (.not. a/share >= b) share = a/b
+  end function share_of
 
   !> The larger of two norms; NaN counts as the largest.
   pure function larger(a, b) result(c)
