@@ -12,6 +12,7 @@
 !> What it adds to the values is taken away from them before meshes are compared; otherwise every difference of two meshes
 !> would be of order 1, however fast the errors of the elements fall.
 module accuracy_laws
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use accuracy_rules, only: fineness_t
   use cost_file, only: ntask
   use kinds, only: wp
@@ -160,7 +161,7 @@ contains
     times = runs(first)%time(rows(1, :))
     effect = (runs(first)%values(:, rows(1, :)) - runs(stiff)%values(:, rows(2, :)))/(1 - runs(stiff)%fineness%depth)
     ! a cell of another operation has no number
-    where (.not. abs(effect) <= huge(effect)) effect = 0
+    where (.not. ieee_is_finite(effect)) effect = 0
     do k = 1, size(pilots)
       associate (fineness => runs(k)%fineness, values => pilots(k)%values)
         do i = 1, size(values, 2)
@@ -262,7 +263,7 @@ contains
     do k = 1, size(rows, 2)
       one = (a%values(:, rows(1, k)) - b%values(:, rows(2, k)))/scales
       ! a cell of another operation has no number
-      where (.not. abs(one) <= huge(one)) one = 0
+      where (.not. ieee_is_finite(one)) one = 0
       d = d + one**2
       last = abs(one)
     end do

@@ -1,5 +1,6 @@
 !> What a run of a deck with ACCURACY leaves for the choice of another one: its fineness and cost in `NAME.cost`, and its history.
 module accuracy_samples
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use accuracy_laws, only: sample_t
   use accuracy_rules, only: fineness_t
   use cost_file, only: cost_t, ntask, read_cost, write_cost
@@ -134,7 +135,7 @@ contains
     allocate (scales(size(sample%values, 1)))
     do k = 1, size(scales)
       associate (values => sample%values(k, :))
-        scales(k) = maxval(values, mask=abs(values) <= huge(values)) - minval(values, mask=abs(values) <= huge(values))
+        scales(k) = maxval(values, mask=ieee_is_finite(values)) - minval(values, mask=ieee_is_finite(values))
         if (size(values) == 1) scales(k) = abs(values(1))
       end associate
     end do

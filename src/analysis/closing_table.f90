@@ -9,6 +9,7 @@
 !> - Time: errors that come of the path within steps are of order 1 in sum; those of heat of order 1, or 2 (TR-BDF2, and
 !>   theta = 1/2). Seconds go with the number of steps, at the same iterations a step.
 module closing_table
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use accuracy_costs, only: grown_seconds
   use accuracy_plan, only: accuracy_lines, accuracy_t, add_accuracy
   use cost_file, only: cost_t, ntask, remesher_task
@@ -140,7 +141,7 @@ contains
     real(wp), intent(in) :: column(:)   !! (nrow) [-]
     real(wp) :: value
 
-    value = maxval([0.0_wp, pack(column, abs(column) <= huge(column))])
+    value = maxval([0.0_wp, pack(column, ieee_is_finite(column))])
   end function largest
 
   !> Error of the stress, and of the strain where the steps were followed.
