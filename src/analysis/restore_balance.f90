@@ -83,6 +83,9 @@ module restore_balance
   !> contour leads elsewhere, says nothing of the rest (found: three points with a sixth of the force, off by 3 to 14). So a
   !> third of the force must lie off for a mesh to be refused by it; pressures that are lost change the force of the die (FORCE).
   real(wp), parameter :: most_off = 3.0_wp
+  !> Dies count as if they bore this share of what the largest one does, at least (found: a front of a flash that comes to a plane
+  !> with one node, and a four-thousandth of the force).
+  real(wp), parameter :: small_die = 0.05_wp
 
 contains
 
@@ -237,7 +240,7 @@ contains
 
   !> Depth found on the new contour against the depth that was carried, over what contact allows and what a parabola through three
   !> nodes may miss: the mean over the pressures that a die carries, of the die where it is worst. (A single point may be far off
-  !> where contact ends: it carries almost nothing.)
+  !> where contact ends: it carries almost nothing. Nor does a die that bears a small share of what the largest one does.)
   pure function depth_change(scene, solution) result(change)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -270,7 +273,7 @@ contains
       end associate
     end do
     change = 0
-    if (any(force > 0)) change = maxval(moment/max(force, tiny(1.0_wp)))
+    if (any(force > 0)) change = maxval(moment/max(force, small_die*maxval(force)))
   end function depth_change
 
 end module restore_balance
