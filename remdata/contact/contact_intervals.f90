@@ -173,28 +173,49 @@ contains
 
   contains
 
-    !> Is an interval under way as it comes to an end: is a beginning the last that is passed before it?
+    !> Is an interval under way as the loop comes to an end? Its beginning is then what is passed last before it; where as many end
+    !> as begin, nothing changes: they are points of contact, or intervals that meet.
     pure function ends_another(end) result(yes)
       integer, intent(in) :: end
       logical :: yes
-      type(side_point_t) :: before
       real(wp) :: back, nearest
       integer :: m
 
       yes = .false.
       nearest = huge(nearest)
       do m = 1, size(ends)
-        if (ends(m)%group /= number) cycle
-        before = side_point_of(ends(m))
-        if (before%side == 0) cycle
-        back = modulo(along(side_point_of(ends(end))) - along(before), real(nside, wp))
-        if (back <= coincidence_tolerance .or. back >= nside - coincidence_tolerance) cycle
-        if (back > nearest + coincidence_tolerance) cycle
-        ! of two at the same point the beginning is the last
-        yes = ends(m)%begins .or. yes .and. back >= nearest - coincidence_tolerance
+        back = distance(m, end)
+        if (back <= coincidence_tolerance .or. back >= nearest .or. begun_at(m) == 0) cycle
         nearest = back
+        yes = begun_at(m) > 0
       end do
     end function ends_another
+
+    !> Intervals that begin where a contact end is, less those that end there.
+    pure function begun_at(end) result(n)
+      integer, intent(in) :: end
+      integer :: n, m
+
+      n = 0
+      do m = 1, size(ends)
+        if (abs(distance(m, end)) <= coincidence_tolerance) n = n + merge(1, -1, ends(m)%begins)
+      end do
+    end function begun_at
+
+    !> Along the loop from one contact end of the group to another, 0 for the same place; below 0 where one is of another group or
+    !> loop.
+    pure function distance(from, to) result(d)
+      integer, intent(in) :: from, to
+      real(wp) :: d
+      type(side_point_t) :: points(2)
+
+      d = -1
+      if (any(ends([from, to])%group /= number)) return
+      points = [side_point_of(ends(from)), side_point_of(ends(to))]
+      if (any(points%side == 0)) return
+      d = modulo(along(points(2)) - along(points(1)), real(nside, wp))
+      if (d >= nside - coincidence_tolerance) d = 0
+    end function distance
 
     pure function side_point_of(one) result(side_point)
       type(contact_end_t), intent(in) :: one
