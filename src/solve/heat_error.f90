@@ -16,7 +16,8 @@
 !> Where points have kinetics, phases err too, dz, and with them latent heat and conductivity: what has come too late is made up
 !> for. There d0 is what the content takes up less from a start with the errors of temperatures and phases to the same
 !> temperatures at the end (kinetics_error), less dt times what flows more by the phases that are left of these errors; dz1 is
-!> what the points make of all errors, and what the step errs in phases itself.
+!> what the points make of all errors (of e1 by the derivatives that their kinetics bring along), and what the step errs in phases
+!> itself.
 module heat_error
   use corrections, only: solve_correction
   use elem_api, only: report_t
@@ -25,7 +26,7 @@ module heat_error
   use external_loads, only: external_forces
   use fields, only: find_field
   use kinds, only: wp
-  use kinetics_error, only: content_beside, knows_phases, path_piece_t
+  use kinetics_error, only: add_by_temperature, content_beside, knows_phases, path_piece_t
   use path_record, only: state_error_t
   use scene, only: scene_t
   use solution, only: solution_t
@@ -75,7 +76,7 @@ contains
     type(path_piece_t), intent(in) :: whole
     type(outcome_t), intent(inout) :: outcome
     real(wp), dimension(size(rates)) :: heat, middle, temperatures, before, taken
-    type(state_error_t), dimension(size(scene%groups)) :: none, phases
+    type(state_error_t), dimension(size(scene%groups)) :: none, phases, by_end
     real(wp) :: length, mean_over, unused
     logical :: touched(size(rates)), follows
 
@@ -86,12 +87,12 @@ contains
     call take(equations, find_field(scene%fields, 'temperature'), solution%heat%content_error, heat)
     call take(equations, find_field(scene%fields, 'die_temperature'), solution%heat%die_error, heat)
     call take(equations, find_field(scene%fields, 'temperature'), solution%heat%temperature_error, before)
-    if (knows_phases(whole) .and. any(abs(before) > 0)) then
+    if (knows_phases(whole)) then
+      call content_beside(scene, equations, solution, dt, outcome%du, before, small, whole, taken, phases, by_end, touched, follows)
       temperatures = 0
-      call content_beside(scene, equations, solution, dt, outcome%du, before, temperatures, small, whole, taken, phases, touched, &
-                          follows)
-      if (follows) heat = merge(-taken - dt*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, &
-                                                     phases), heat, touched)
+      if (follows .and. any(abs(before) > 0)) &
+        heat = merge(-taken - dt*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, phases), &
+                     heat, touched)
     end if
     if (two_stages .and. any(abs(heat) > 0)) then
       call solve_correction(equations, 2*heat/length, temperatures, outcome%error, at_hand=.true.)
@@ -102,10 +103,7 @@ contains
     heat = heat + length*rates
     call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
-    if (knows_phases(whole)) then
-      call content_beside(scene, equations, solution, dt, outcome%du, before, temperatures, small, whole, taken, phases, touched, &
-                          follows)
-    end if
+    call add_by_temperature(scene, equations, by_end, temperatures, phases)
     heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, phases)
     call measure_error(scene, equations, solution, outcome%du, temperatures, unused, outcome%heat%error_now)
     where (equations%solves(equations%now)%equation == 0) heat = 0
