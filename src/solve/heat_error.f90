@@ -13,6 +13,9 @@
 !> are as in the step; dies with a heat capacity of their own have errors as nodes do. (Global errors by the linearised equation
 !> with the local ones as its sources: R.D. Skeel, Thirteen ways to estimate global error, Numer. Math. 48 (1986) 1-20.)
 !>
+!> A torch leaves in each step the heat that it has meanwhile (torch_steps). The difference of two formulas knows other heats of it;
+!> so steps may be shortened by how its power changes, but no such heat is carried on.
+!>
 !> Where points have kinetics, phases err too, dz, and with them latent heat and conductivity: what has come too late is made up
 !> for. There d0 is what the content takes up less from a start with the errors of temperatures and phases to the same
 !> temperatures at the end (kinetics_error), less dt times what flows more by the phases that are left of these errors; dz1 is
@@ -43,12 +46,13 @@ module heat_error
 contains
 
   !> Error of a step, and what it makes of those before it.
-  subroutine estimate_error(scene, equations, solution, dt, rates, after, two_stages, whole, outcome, at_hand)
+  subroutine estimate_error(scene, equations, solution, dt, rates, exact, after, two_stages, whole, outcome, at_hand)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt         !! [time]
     real(wp), intent(in) :: rates(:)   !! (ndof) error of the heat contents over the length that the matrix divides them by [power]
+    real(wp), intent(in) :: exact(:)   !! (ndof) what of it is none: the heat of torches, all of which comes in [power]
     real(wp), intent(in) :: after(:)   !! (ndof) flows at the end of the step [power]
     logical, intent(in) :: two_stages  !! the step is one of TR-BDF2
     type(path_piece_t), intent(in) :: whole   !! all of the step, where points have kinetics
@@ -60,7 +64,7 @@ contains
     if (.not. allocated(outcome%error)) then
       call measure_error(scene, equations, solution, outcome%du, temperatures, outcome%heat%error, of_temperature)
       outcome%heat%estimated = .true.
-      call carry_errors(scene, equations, solution, dt, rates, after, two_stages, whole, outcome)
+      call carry_errors(scene, equations, solution, dt, rates - exact, after, two_stages, whole, outcome)
     end if
     if (allocated(outcome%error)) outcome%converged = .false.
   end subroutine estimate_error
