@@ -134,7 +134,7 @@ contains
 
     allocate (list(0))
     next: do i = 1, size(variables)
-      if (variables(i)%transfer /= transfer_fraction) cycle
+      if (variables(i)%transfer /= transfer_fraction) cycle next
       do k = 1, size(list)
         if (list(k)%s == formulation_of(variables(i))) cycle next
       end do
