@@ -10,7 +10,7 @@ module nodal_balance
   use kinds, only: wp
   use quadrature, only: square_rule
   use shape_functions, only: quad4, quad8
-  use transfer_balance, only: same_integral
+  use transfer_balance, only: same_integral, was_cut
   use transfer_map, only: carry, transfer_map_t
   use transfer_mesh, only: transfer_mesh_t
   use transfer_nodes, only: shape_weights
@@ -19,8 +19,6 @@ module nodal_balance
   public :: keep_nodal_means, mean_of_nodal
 
   integer, parameter :: most_sweeps = 50
-  !> New contours change the volume of a body by less than this share of it; more was cut off.
-  real(wp), parameter :: same_volume = 1.0e-3_wp
 
 contains
 
@@ -64,7 +62,7 @@ contains
       volume = sum(new%volumes, mask=here)
       mean = mean_of_nodal(old, m, values)
       ! a part that was cut has the mean of what is left, as far as the new points see it
-      if (abs(volume - sum(old%volumes, mask=old%point_material == m)) > same_volume*volume) &
+      if (was_cut(sum(old%volumes, mask=old%point_material == m), volume)) &
         mean = sum(old_at_points(1, :)*new%volumes, mask=here)/volume
       call keep_mean_of_all(new, m, own, corners_only, mean, lower, upper, new_values)
     end do

@@ -2,9 +2,9 @@
 module transfer_treatment
   use kinds, only: wp
   use state_variables, only: component_names, state_variable_t, transfer_fraction, transfer_scalar
-  use text, only: string_t
+  use text, only: add_text, string_t
   use transfer_api, only: limit_none, limit_sources, transfer_options_t
-  use transfer_balance, only: integral, keep_mean, keep_mean_fractions
+  use transfer_balance, only: integral, keep_mean, keep_mean_fractions, was_cut
   use transfer_limits, only: clip, fractions_rule, keep_fractions, sum_is_one
   use transfer_map, only: range_of_sources, transfer_map_t
   use transfer_mesh, only: transfer_mesh_t
@@ -61,7 +61,9 @@ contains
     real(wp) :: old(size(old_points), size(before, 1)), new(size(new_points), size(before, 1))
     real(wp) :: old_volumes(size(old_points)), new_volumes(size(new_points))
     type(carried_quantity_t) :: rows(size(before, 1))
-    logical :: is_fraction(size(before, 1))
+    type(string_t), allocatable :: formulations(:)
+    integer, allocatable :: fractional(:)
+    real(wp) :: growth
     integer :: i, k
 
     old = transpose(before(:, old_points))
@@ -76,12 +78,21 @@ contains
                   min(rows(k)%largest_before, upper(new_points, k)), new(:, k), rows(k)%clipped)
       end do
     end do
-    call find_fractions(variables, old, is_fraction)
-    associate (fractional => pack([(k, k=1, size(rows))], is_fraction))
+    call list_formulations(variables, formulations)
+    do i = 1, size(formulations)
+      fractional = fractions_of(variables, formulations(i)%s, old)
       if (size(fractional) > 0) call treat_fractions(old(:, fractional), new_volumes, fractional, new, rows)
-      rows%limited = [(integral(new(:, k), new_volumes), k=1, size(rows))]
-      if (options%conserve) call conserve_means(variables, fractional, old, old_volumes, new_volumes, rows, new)
-    end associate
+    end do
+    rows%limited = [(integral(new(:, k), new_volumes), k=1, size(rows))]
+    ! means of the whole are none of what a cut has left
+    if (options%conserve .and. .not. was_cut(sum(old_volumes), sum(new_volumes))) then
+      growth = sum(new_volumes)/sum(old_volumes)
+      call conserve_scalars(variables, growth, new_volumes, rows, new)
+      do i = 1, size(formulations)
+        fractional = fractions_of(variables, formulations(i)%s, old)
+        if (size(fractional) > 0) call conserve_fractions(fractional, growth, old, new_volumes, rows, new)
+      end do
+    end if
     rows%after = [(integral(new(:, k), new_volumes), k=1, size(rows))]
     rows%least_after = minval(new, 1)
     rows%largest_after = maxval(new, 1)
@@ -114,21 +125,47 @@ contains
     end do
   end subroutine start_rows
 
-  !> Components that are fractions of this material: those not zero all over it.
-  pure subroutine find_fractions(variables, old, is_fraction)
+  !> Formulations on the points that have fractions, by what comes before the names of their variables (state_pieces): the sum of
+  !> each one's fractions is 1 by itself.
+  pure subroutine list_formulations(variables, list)
     type(state_variable_t), intent(in) :: variables(:)
-    real(wp), intent(in) :: old(:, :)
-    logical, intent(out) :: is_fraction(:)
+    type(string_t), allocatable, intent(out) :: list(:)   !! (nformulation)
     integer :: i, k
 
-    is_fraction = .false.
+    allocate (list(0))
+    next: do i = 1, size(variables)
+      if (variables(i)%transfer /= transfer_fraction) cycle next
+      do k = 1, size(list)
+        if (list(k)%s == formulation_of(variables(i))) cycle next
+      end do
+      call add_text(list, formulation_of(variables(i)))
+    end do next
+  end subroutine list_formulations
+
+  !> What comes before the name of a variable, nothing for those of the first formulation.
+  pure function formulation_of(variable) result(name)
+    type(state_variable_t), intent(in) :: variable
+    character(len=:), allocatable :: name
+
+    name = variable%name(:index(variable%name, ' ', back=.true.))
+  end function formulation_of
+
+  !> Components that are fractions of this material in a formulation: those not zero all over it.
+  pure function fractions_of(variables, formulation, old) result(components)
+    type(state_variable_t), intent(in) :: variables(:)
+    character(len=*), intent(in) :: formulation
+    real(wp), intent(in) :: old(:, :)   !! (point, component) [unit of each component]
+    integer, allocatable :: components(:)
+    integer :: i, k
+
+    allocate (components(0))
     do i = 1, size(variables)
-      if (variables(i)%transfer /= transfer_fraction) cycle
+      if (variables(i)%transfer /= transfer_fraction .or. formulation_of(variables(i)) /= formulation) cycle
       do k = variables(i)%first, variables(i)%first + variables(i)%ncomp - 1
-        is_fraction(k) = any(abs(old(:, k)) > 0)
+        if (any(abs(old(:, k)) > 0)) components = [components, k]
       end do
     end do
-  end subroutine find_fractions
+  end function fractions_of
 
   !> Fractions between 0 and 1, their sums as they were.
   pure subroutine treat_fractions(old, volumes, fractional, new, rows)
@@ -150,36 +187,45 @@ contains
     end do
   end subroutine treat_fractions
 
-  !> Means of scalars within the range of the material, and of fractions, as in the old mesh.
-  pure subroutine conserve_means(variables, fractional, old, old_volumes, new_volumes, rows, new)
+  !> Means of scalars as in the old mesh, within the range of the material.
+  pure subroutine conserve_scalars(variables, growth, volumes, rows, new)
     type(state_variable_t), intent(in) :: variables(:)
-    integer, intent(in) :: fractional(:)
-    real(wp), intent(in) :: old(:, :), old_volumes(:), new_volumes(:)
-    type(carried_quantity_t), intent(in) :: rows(:)
-    real(wp), intent(inout) :: new(:, :)
-    real(wp) :: growth
-    real(wp) :: fractions(size(fractional), size(new, 1))
+    real(wp), intent(in) :: growth                      !! of the volume of the material [-]
+    real(wp), intent(in) :: volumes(:)                  !! (npoint) of the new mesh [volume]
+    type(carried_quantity_t), intent(in) :: rows(:)     !! (component)
+    real(wp), intent(inout) :: new(:, :)                !! (point, component) [unit of each component]
     integer :: i, k
 
-    growth = sum(new_volumes)/sum(old_volumes)
     do i = 1, size(variables)
       if (variables(i)%transfer /= transfer_scalar) cycle
       do k = variables(i)%first, variables(i)%first + variables(i)%ncomp - 1
-        call keep_mean(new_volumes, min(rows(k)%least_before, minval(new(:, k))), &
-                       max(rows(k)%largest_before, maxval(new(:, k))), rows(k)%before*growth, new(:, k))
+        call keep_mean(volumes, min(rows(k)%least_before, minval(new(:, k))), max(rows(k)%largest_before, maxval(new(:, k))), &
+                       rows(k)%before*growth, new(:, k))
       end do
     end do
-    if (size(fractional) == 0) return
+  end subroutine conserve_scalars
+
+  !> Means of the fractions of a formulation as in the old mesh.
+  pure subroutine conserve_fractions(fractional, growth, old, volumes, rows, new)
+    integer, intent(in) :: fractional(:)                !! (nfraction) components
+    real(wp), intent(in) :: growth                      !! of the volume of the material [-]
+    real(wp), intent(in) :: old(:, :)                   !! (point, component) of the old mesh [unit of each component]
+    real(wp), intent(in) :: volumes(:)                  !! (npoint) of the new mesh [volume]
+    type(carried_quantity_t), intent(in) :: rows(:)     !! (component)
+    real(wp), intent(inout) :: new(:, :)                !! (point, component) [unit of each component]
+    real(wp) :: fractions(size(fractional), size(new, 1))
+    integer :: i
+
     if (fractions_rule(transpose(old(:, fractional))) == sum_is_one) then
       fractions = transpose(new(:, fractional))
-      call keep_mean_fractions(new_volumes, rows(fractional)%before*growth, fractions)
+      call keep_mean_fractions(volumes, rows(fractional)%before*growth, fractions)
       new(:, fractional) = transpose(fractions)
     else
       do i = 1, size(fractional)
-        call keep_mean(new_volumes, 0.0_wp, 1.0_wp, rows(fractional(i))%before*growth, new(:, fractional(i)))
+        call keep_mean(volumes, 0.0_wp, 1.0_wp, rows(fractional(i))%before*growth, new(:, fractional(i)))
       end do
     end if
-  end subroutine conserve_means
+  end subroutine conserve_fractions
 
   pure subroutine add_rows(more, rows)
     type(carried_quantity_t), intent(in) :: more(:)

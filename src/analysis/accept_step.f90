@@ -154,7 +154,7 @@ contains
     call commit(scene, equations, solution)
   end subroutine accept_balance
 
-  !> Middle nodes get the values of fields that have none of their own there.
+  !> Middle nodes get the values of fields that have none of their own there, and their changes in the step.
   pure subroutine fill_middles(scene, fields)
     type(scene_t), intent(in) :: scene
     type(field_t), intent(inout) :: fields(:)
@@ -163,7 +163,9 @@ contains
     do f = 1, size(fields)
       if (.not. (fields(f)%declared .and. has_corners_only(fields(f)))) cycle
       do g = 1, size(scene%groups)
-        if (is_solid(scene%groups(g))) call fill_middle_nodes(scene%groups(g)%connectivity, fields(f)%value)
+        if (.not. is_solid(scene%groups(g))) cycle
+        call fill_middle_nodes(scene%groups(g)%connectivity, fields(f)%value)
+        call fill_middle_nodes(scene%groups(g)%connectivity, fields(f)%last_increment)
       end do
     end do
   end subroutine fill_middles

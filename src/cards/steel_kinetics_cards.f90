@@ -181,7 +181,7 @@ contains
     type(steel_t), intent(inout) :: steel
     type(histories_t) :: cct
     character(len=:), allocatable :: word
-    real(wp) :: rates(most_rows), t(most_rows), z(3, most_rows)
+    real(wp) :: rates(most_rows), log_rates(most_rows), t(most_rows), z(3, most_rows)
     integer :: first(most_rows), n, k
 
     if (steel%cct%n > 0) call cursor%fail('there are two CCT cards')
@@ -199,11 +199,13 @@ contains
       if (cursor%failed()) return
       k = k + 1
       call read_cct_row(cursor, k, n, rates, first, t, z)
+      if (n > 0 .and. .not. cursor%failed()) log_rates(n) = log(rates(n))
     end do
     if (n < 2) call cursor%fail('expected rows of two cooling rates at least')
     if (cursor%failed()) return
     cct%n = n
     allocate (cct%rate, source=rates(:n))
+    allocate (cct%log_rate, source=log_rates(:n))
     cct%first = [first(:n), k + 1]
     allocate (cct%t, source=t(:k))
     allocate (cct%z, source=z(:, :k))

@@ -78,7 +78,9 @@ module elem_api
       !> [unit of each driver].
       real(wp), intent(in) :: drivers(:, :, :, :)
       real(wp), intent(in), contiguous :: committed(:, :, :)   !! (nstate, npoint, nb) [unit of each component]
-      real(wp), intent(inout), contiguous :: trial(:, :, :)    !! (nstate, npoint, nb) [unit of each component]
+      !> (nstate, npoint, nb) [unit of each component]; of an element of heat it may have as many rows again, for the derivatives of
+      !> the state by the temperature of the point at the end of the step.
+      real(wp), intent(inout), contiguous :: trial(:, :, :)
       real(wp), intent(out) :: force(:, :)                     !! (ndof, nb) per radian when axisymmetric [residual]
       real(wp), intent(inout) :: stiffness(:, :, :)            !! (ndof, ndof, nb), written when instant%tangent [residual/unknown]
       type(report_t), intent(out) :: report

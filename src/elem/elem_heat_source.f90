@@ -73,7 +73,7 @@ contains
     type(functions_t) :: own
     type(heat_points_t) :: place
     real(wp) :: motion(16), t(8)
-    integer :: e, k, p, n, u
+    integer :: e, k, p, n, u, moves
 
     force = 0
     if (instant%tangent) stiffness = 0
@@ -82,11 +82,11 @@ contains
     call quad8_rule(group%rule%n, rule)
     call functions_of(n == 4, rule, own)
     u = first_unknown(layout, displacement_field)
-    motion = 0
+    moves = merge(16, 0, u > 0)
     do e = 1, size(x, 3)
       if (u > 0) motion = du(u:u + 15, e)
       call place_element(scene, instant, kinematics%finite, rule, own, &
-                         scene%mesh%coordinates(:, group%connectivity(:, first + e - 1)), x(:, :, e), motion, place)
+                         scene%mesh%coordinates(:, group%connectivity(:, first + e - 1)), x(:, :, e), motion(:moves), place)
       if (.not. place%valid) then
         report%status = block_inverted
         report%element = first + e - 1

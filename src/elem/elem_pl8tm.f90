@@ -132,10 +132,10 @@ contains
     real(wp) :: mixture(min(size(drivers, 1), driver_count(law)), 2, group%rule%n), by_end(size(committed, 1), group%rule%n)
     real(wp) :: phases_by_end(min(size(drivers, 1), driver_count(law)), group%rule%n)
     integer :: phase(driver_count(law))
-    integer :: e, k, u, ratio, due, n, m
+    integer :: e, k, u, moves, ratio, due, n, m
 
     force = 0
-    if (instant%content .and. instant%mode /= mode_error) trial = committed
+    if (instant%content .and. instant%mode /= mode_error) trial(:size(committed, 1), :, :) = committed
     if (instant%tangent) stiffness = 0
     if (instant%mode == mode_restore) then
       ! on a new mesh temperatures stay as they were carried
@@ -155,11 +155,11 @@ contains
     call quad8_rule(group%rule%n, rule)
     call functions_of(group%option == bilinear, rule, own)
     u = first_unknown(layout, displacement_field)
-    motion = 0
+    moves = merge(16, 0, u > 0)
     do e = 1, size(x, 3)
       if (u > 0) motion = du(u:u + 15, e)
       call place_element(scene, instant, kinematics%finite, rule, own, &
-                         scene%mesh%coordinates(:, group%connectivity(:, first + e - 1)), x(:, :, e), motion, place)
+                         scene%mesh%coordinates(:, group%connectivity(:, first + e - 1)), x(:, :, e), motion(:moves), place)
       if (.not. place%valid) then
         report%status = block_inverted
         report%element = first + e - 1
@@ -184,6 +184,7 @@ contains
           call add_released(instant, law, material, rule%npoint, own, place, drivers(:m, :, :, e), du(:own%n, e), &
                             start(:own%n, e), u, committed(:n, :, e), trial(:n, :, e), force(:, e), stiffness(:, :, e), &
                             by_end(:n, :), report)
+          if (size(trial, 1) > size(committed, 1)) trial(size(committed, 1) + 1:size(committed, 1) + n, :, e) = by_end(:n, :)
           if (due > 0) then
             call add_due(instant, rule%npoint, own, place, committed(due, :, e), force(:, e), report)
             trial(due, :, e) = 0
@@ -236,19 +237,24 @@ contains
     type(quad8_rule_t), intent(in) :: rule
     type(functions_t), intent(in) :: own
     real(wp), intent(in) :: x0(2, 8), x(2, 8)   !! nodes at the start of the mesh, and of the step [length]
-    real(wp), intent(in) :: motion(16)          !! of the nodes, x then y [length]
+    real(wp), intent(in) :: motion(:)           !! (16) of the nodes, x then y; (0) where the scene has none [length]
     type(heat_points_t), intent(out) :: place
     real(wp) :: y(2, 8), nx(8), ny(8), detj, before, thickness, jacobian(2, 2), section(3)
-    logical :: moved
+    logical :: moves, moved
     integer :: p
 
+    moves = size(motion) > 0
     y = x
-    if (finite) y = x + transpose(reshape(motion, [8, 2]))
+    if (finite .and. moves) y = x + transpose(reshape(motion, [8, 2]))
     section = scene%section
     if (finite) section = instant%section
     moved = finite .or. any(abs(x - x0) > 0)
     do p = 1, rule%npoint
-      call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
+      if (moves) then
+        call derivatives(rule%dphi(:, :, p), y, nx, ny, detj)
+      else
+        detj = determinant(rule%dphi(:, :, p), y)
+      end if
       thickness = thickness_at(section, matmul(y, rule%phi(:, p)))
       place%dv0(p) = detj*rule%weight(p)*thickness
       before = detj*thickness
@@ -259,14 +265,17 @@ contains
       place%valid = place%valid .and. detj > 0 .and. thickness > 0
       if (.not. place%valid) return
       place%dv(p) = detj*thickness*rule%weight(p)
-      place%nx(:, p) = nx
-      place%ny(:, p) = ny
       jacobian(:, 1) = matmul(y, rule%dphi(1, :, p))
       jacobian(:, 2) = matmul(y, rule%dphi(2, :, p))
       associate (d => own%dphi(:, :own%n, p))
         place%gx(:own%n, p) = (jacobian(2, 2)*d(1, :) - jacobian(2, 1)*d(2, :))/detj
         place%gy(:own%n, p) = (jacobian(1, 1)*d(2, :) - jacobian(1, 2)*d(1, :))/detj
       end associate
+      ! nobody asks for what goes with a motion that is none
+      place%strain(p) = 0
+      if (.not. moves) cycle
+      place%nx(:, p) = nx
+      place%ny(:, p) = ny
       place%swelling(1:8, p) = nx + section(2)*rule%phi(:, p)/thickness
       place%swelling(9:16, p) = ny + section(3)*rule%phi(:, p)/thickness
       if (finite) then

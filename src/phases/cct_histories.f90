@@ -25,7 +25,7 @@ contains
     type(dual_t), intent(in) :: grain        !! size of the austenite's grains [um]
     type(dual_t), intent(in) :: z(3)         !! ferrite, pearlite and bainite at the start
     type(dual_t), intent(out) :: increments(3)   !! [-]
-    type(dual_t) :: rate, share
+    type(dual_t) :: rate, share, first(3), second(3)
     integer :: k, i
 
     increments = dual_t()
@@ -33,12 +33,16 @@ contains
     if (to%value >= cct%hottest .or. from%value <= cct%coldest) return
     rate = log((from - to)/time)
     if (abs(cct%grain_factor) > 0) rate = rate + cct%grain_factor*(grain - cct%grain_reference)
-    if (rate%value < log(cct%rate(1))) rate = dual_t(log(cct%rate(1)))
-    if (rate%value > log(cct%rate(cct%n))) rate = dual_t(log(cct%rate(cct%n)))
+    if (rate%value < cct%log_rate(1)) rate = dual_t(cct%log_rate(1))
+    if (rate%value > cct%log_rate(cct%n)) rate = dual_t(cct%log_rate(cct%n))
     call nearest_place(cct, rate, from, z, k, share)
+    first = change_along(cct, k, from, to)
+    second = change_along(cct, k + 1, from, to)
     do i = 1, 3
-      increments(i) = (1.0_wp - share)*(history_at(cct, k, i, to) - history_at(cct, k, i, from)) &
-                      + share*(history_at(cct, k + 1, i, to) - history_at(cct, k + 1, i, from))
+      ! (1 - share) first + share second, written out: it is done in every sub-step of every point
+      increments(i)%value = (1 - share%value)*first(i)%value + share%value*second(i)%value
+      increments(i)%slope = (-share%slope*first(i)%value + (1 - share%value)*first(i)%slope) &
+                            + (share%slope*second(i)%value + share%value*second(i)%slope)
     end do
   end subroutine cct_increments
 
@@ -48,38 +52,64 @@ contains
     type(dual_t), intent(in) :: rate, temperature, z(3)
     integer, intent(out) :: k
     type(dual_t), intent(out) :: share
-    type(dual_t) :: a, b, along, length
-    real(wp) :: here(4), from(4), to(4), line(4), s, distance, best
-    integer :: h, i
+    type(dual_t) :: a(3), b(3), along, length
+    real(wp) :: here(4), from(4), to(4), s, distance, best, within
+    integer :: h, i, reached
 
-    best = huge(best)
-    k = 1
     here = [rate%value, z%value]
-    to = place_of(cct, 1, temperature%value)
+    ! the line across the rate itself: those that are farther away by their rates alone need not be asked
+    h = 1
+    do while (h < cct%n - 1)
+      if (rate%value <= cct%log_rate(h + 1)) exit
+      h = h + 1
+    end do
+    call measure_line(here, place_of(cct, h, temperature%value), place_of(cct, h + 1, temperature%value), s, within)
+    within = within*(1 + sqrt(epsilon(within)))
+    best = huge(best)
+    k = h
+    reached = 0
     do h = 1, cct%n - 1
-      from = to
+      if (max(0.0_wp, here(1) - cct%log_rate(h + 1), cct%log_rate(h) - here(1))**2 > within) cycle
+      if (reached == h) then
+        from = to
+      else
+        from = place_of(cct, h, temperature%value)
+      end if
       to = place_of(cct, h + 1, temperature%value)
-      line = to - from
-      s = max(0.0_wp, min(1.0_wp, dot_product(here - from, line)/dot_product(line, line)))
-      distance = sum((here - from - s*line)**2)
+      reached = h + 1
+      call measure_line(here, from, to, s, distance)
       if (distance >= best) cycle
       best = distance
       k = h
     end do
     ! the same again for the nearest line, with its derivative
-    b = dual_t(log(cct%rate(k + 1)/cct%rate(k)))
-    along = (rate - log(cct%rate(k)))*b
-    length = b*b
+    length = dual_t(log(cct%rate(k + 1)/cct%rate(k)))
+    along = (rate - cct%log_rate(k))*length
+    length = length*length
+    a = fractions_at(cct, k, temperature)
+    b = fractions_at(cct, k + 1, temperature)
     do i = 1, 3
-      a = history_at(cct, k, i, temperature)
-      b = history_at(cct, k + 1, i, temperature) - a
-      along = along + (z(i) - a)*b
-      length = length + b*b
+      b(i) = dual_t(b(i)%value - a(i)%value, b(i)%slope - a(i)%slope)
+      along%value = along%value + (z(i)%value - a(i)%value)*b(i)%value
+      along%slope = along%slope + ((z(i)%slope - a(i)%slope)*b(i)%value + (z(i)%value - a(i)%value)*b(i)%slope)
+      length%value = length%value + b(i)%value*b(i)%value
+      length%slope = length%slope + (b(i)%slope*b(i)%value + b(i)%value*b(i)%slope)
     end do
     share = along/length
     if (share%value <= 0) share = dual_t(0.0_wp)
     if (share%value >= 1) share = dual_t(1.0_wp)
   end subroutine nearest_place
+
+  !> The share of a line between two places that is nearest to a third one, and the square of its distance.
+  pure subroutine measure_line(here, from, to, share, distance)
+    real(wp), intent(in) :: here(4), from(4), to(4)
+    real(wp), intent(out) :: share, distance
+    real(wp) :: line(4)
+
+    line = to - from
+    share = max(0.0_wp, min(1.0_wp, dot_product(here - from, line)/dot_product(line, line)))
+    distance = sum((here - from - share*line)**2)
+  end subroutine measure_line
 
   !> ln(rate) and fractions of history k at a temperature.
   pure function place_of(cct, k, temperature) result(place)
@@ -90,45 +120,72 @@ contains
     real(wp) :: share
     integer :: p
 
-    place(1) = log(cct%rate(k))
+    place(1) = cct%log_rate(k)
+    p = point_before(cct, k, temperature)
+    if (p < cct%first(k)) then
+      place(2:) = cct%z(:, cct%first(k))
+    else if (p == cct%first(k + 1) - 1) then
+      place(2:) = cct%z(:, p)
+    else
+      share = (temperature - cct%t(p))/(cct%t(p + 1) - cct%t(p))
+      place(2:) = (1 - share)*cct%z(:, p) + share*cct%z(:, p + 1)
+    end if
+  end function place_of
+
+  !> Fractions of history k at a temperature: linear between its points, constant outside.
+  pure function fractions_at(cct, k, temperature) result(z)
+    type(histories_t), intent(in) :: cct
+    integer, intent(in) :: k   !! history
+    type(dual_t), intent(in) :: temperature   !! [degC]
+    type(dual_t) :: z(3)   !! ferrite, pearlite, bainite
+    integer :: p, i
+    real(wp) :: slope
+
+    p = point_before(cct, k, temperature%value)
+    do i = 1, 3
+      if (p < cct%first(k)) then
+        z(i) = dual_t(cct%z(i, cct%first(k)))
+      else if (p == cct%first(k + 1) - 1) then
+        z(i) = dual_t(cct%z(i, p))
+      else
+        slope = (cct%z(i, p + 1) - cct%z(i, p))/(cct%t(p + 1) - cct%t(p))
+        z(i) = dual_t(cct%z(i, p) + slope*(temperature%value - cct%t(p)), slope*temperature%slope)
+      end if
+    end do
+  end function fractions_at
+
+  !> Point of history k behind which a temperature is on the way down: one less than the first above all of them, the last below.
+  pure function point_before(cct, k, temperature) result(p)
+    type(histories_t), intent(in) :: cct
+    integer, intent(in) :: k
+    real(wp), intent(in) :: temperature   !! [degC]
+    integer :: p
+
     associate (first => cct%first(k), last => cct%first(k + 1) - 1)
       if (temperature >= cct%t(first)) then
-        place(2:) = cct%z(:, first)
+        p = first - 1
       else if (temperature <= cct%t(last)) then
-        place(2:) = cct%z(:, last)
+        p = last
       else
         do p = first, last - 2
           if (temperature > cct%t(p + 1)) exit
         end do
-        share = (temperature - cct%t(p))/(cct%t(p + 1) - cct%t(p))
-        place(2:) = (1 - share)*cct%z(:, p) + share*cct%z(:, p + 1)
       end if
     end associate
-  end function place_of
+  end function point_before
 
-  !> Fraction i of history k at a temperature: linear between its points, constant outside.
-  pure function history_at(cct, k, i, temperature) result(z)
+  !> Fractions that history k gains on the way from a temperature to another.
+  pure function change_along(cct, k, from, to) result(change)
     type(histories_t), intent(in) :: cct
-    integer, intent(in) :: k   !! history
-    integer, intent(in) :: i   !! 1: ferrite, 2: pearlite, 3: bainite
-    type(dual_t), intent(in) :: temperature   !! [degC]
-    type(dual_t) :: z
-    integer :: p
-    real(wp) :: slope
+    integer, intent(in) :: k
+    type(dual_t), intent(in) :: from, to   !! [degC]
+    type(dual_t) :: change(3)
+    type(dual_t) :: before(3)
 
-    associate (first => cct%first(k), last => cct%first(k + 1) - 1)
-      if (temperature%value >= cct%t(first)) then
-        z = dual_t(cct%z(i, first))
-      else if (temperature%value <= cct%t(last)) then
-        z = dual_t(cct%z(i, last))
-      else
-        do p = first, last - 2
-          if (temperature%value > cct%t(p + 1)) exit
-        end do
-        slope = (cct%z(i, p + 1) - cct%z(i, p))/(cct%t(p + 1) - cct%t(p))
-        z = dual_t(cct%z(i, p) + slope*(temperature%value - cct%t(p)), slope*temperature%slope)
-      end if
-    end associate
-  end function history_at
+    before = fractions_at(cct, k, from)
+    change = fractions_at(cct, k, to)
+    change%value = change%value - before%value
+    change%slope = change%slope - before%slope
+  end function change_along
 
 end module cct_histories

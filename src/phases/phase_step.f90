@@ -114,14 +114,37 @@ contains
     integer, intent(out) :: first, last
     integer :: low, high
 
-    low = 1 + count(nodes <= min(before, now))
-    high = count(nodes < max(before, now))
+    low = 1 + count_up_to(nodes, min(before, now))
+    ! a sub-step costs much more than the look for its end
+    high = low - 1
+    do while (high < size(nodes))
+      if (.not. nodes(high + 1) < max(before, now)) exit
+      high = high + 1
+    end do
     first = low
     last = high
     if (now >= before) return
     first = high
     last = low
   end subroutine find_nodes
+
+  !> How many of ascending numbers, all different, are not above a number.
+  pure function count_up_to(nodes, x) result(n)
+    real(wp), intent(in) :: nodes(:), x
+    integer :: n
+    integer :: above, middle
+
+    n = 0
+    above = size(nodes) + 1
+    do while (above - n > 1)
+      middle = (n + above)/2
+      if (nodes(middle) <= x) then
+        n = middle
+      else
+        above = middle
+      end if
+    end do
+  end function count_up_to
 
   !> Parts into which sub-steps are divided: a function of the state at the start and of the length of the step alone, so that it
   !> stands still while the end temperature is iterated.

@@ -93,6 +93,7 @@ module steels
   type :: histories_t
     integer :: n = 0
     real(wp), allocatable :: rate(:)            !! (n) cooling rates, ascending [K/s]
+    real(wp), allocatable :: log_rate(:)        !! (n) their logarithms
     integer, allocatable :: first(:)            !! (n+1)
     real(wp), allocatable :: t(:), z(:, :)      !! (npoint) [degC], (3, npoint) ferrite, pearlite, bainite
     real(wp) :: hottest = 0.0_wp, coldest = 0.0_wp   !! first and last temperature of all [degC]

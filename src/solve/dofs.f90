@@ -345,7 +345,7 @@ contains
     end do
   end function is_driven
 
-  !> Advance all fields: nodes, pilots and section move, temperatures change.
+  !> Advance all fields: nodes, pilots and section move, temperatures change. Places without an unknown stay as they are.
   pure subroutine move_fields(dofs, motion, fields)
     type(dofs_t), intent(in) :: dofs
     real(wp), intent(in) :: motion(:)            !! (ndof) [unknown]
@@ -357,6 +357,8 @@ contains
       do k = 1, size(fields(f)%value, 2)
         do c = 1, fields(f)%ncomp
           d = dofs%fields(f)%number(c, k)
+          ! what was carried to a new mesh is of no step of this one
+          fields(f)%last_increment(c, k) = 0
           if (d > 0) fields(f)%last_increment(c, k) = motion(d)
         end do
       end do

@@ -13,10 +13,14 @@
 !> are as in the step; dies with a heat capacity of their own have errors as nodes do. (Global errors by the linearised equation
 !> with the local ones as its sources: R.D. Skeel, Thirteen ways to estimate global error, Numer. Math. 48 (1986) 1-20.)
 !>
+!> A torch leaves in each step the heat that it has meanwhile (torch_steps). The difference of two formulas knows other heats of it;
+!> so steps may be shortened by how its power changes, but no such heat is carried on.
+!>
 !> Where points have kinetics, phases err too, dz, and with them latent heat and conductivity: what has come too late is made up
 !> for. There d0 is what the content takes up less from a start with the errors of temperatures and phases to the same
 !> temperatures at the end (kinetics_error), less dt times what flows more by the phases that are left of these errors; dz1 is
-!> what the points make of all errors, and what the step errs in phases itself.
+!> what the points make of all errors (of e1 by the derivatives that their kinetics bring along), and what the step errs in phases
+!> itself.
 module heat_error
   use corrections, only: solve_correction
   use elem_api, only: report_t
@@ -25,7 +29,7 @@ module heat_error
   use external_loads, only: external_forces
   use fields, only: find_field
   use kinds, only: wp
-  use kinetics_error, only: content_beside, knows_phases, path_piece_t
+  use kinetics_error, only: add_by_temperature, content_beside, knows_phases, path_piece_t
   use path_record, only: state_error_t
   use scene, only: scene_t
   use solution, only: solution_t
@@ -42,12 +46,13 @@ module heat_error
 contains
 
   !> Error of a step, and what it makes of those before it.
-  subroutine estimate_error(scene, equations, solution, dt, rates, after, two_stages, whole, outcome, at_hand)
+  subroutine estimate_error(scene, equations, solution, dt, rates, exact, after, two_stages, whole, outcome, at_hand)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     real(wp), intent(in) :: dt         !! [time]
     real(wp), intent(in) :: rates(:)   !! (ndof) error of the heat contents over the length that the matrix divides them by [power]
+    real(wp), intent(in) :: exact(:)   !! (ndof) what of it is none: the heat of torches, all of which comes in [power]
     real(wp), intent(in) :: after(:)   !! (ndof) flows at the end of the step [power]
     logical, intent(in) :: two_stages  !! the step is one of TR-BDF2
     type(path_piece_t), intent(in) :: whole   !! all of the step, where points have kinetics
@@ -59,7 +64,7 @@ contains
     if (.not. allocated(outcome%error)) then
       call measure_error(scene, equations, solution, outcome%du, temperatures, outcome%heat%error, of_temperature)
       outcome%heat%estimated = .true.
-      call carry_errors(scene, equations, solution, dt, rates, after, two_stages, whole, outcome)
+      call carry_errors(scene, equations, solution, dt, rates - exact, after, two_stages, whole, outcome)
     end if
     if (allocated(outcome%error)) outcome%converged = .false.
   end subroutine estimate_error
@@ -75,7 +80,7 @@ contains
     type(path_piece_t), intent(in) :: whole
     type(outcome_t), intent(inout) :: outcome
     real(wp), dimension(size(rates)) :: heat, middle, temperatures, before, taken
-    type(state_error_t), dimension(size(scene%groups)) :: none, phases
+    type(state_error_t), dimension(size(scene%groups)) :: none, phases, by_end
     real(wp) :: length, mean_over, unused
     logical :: touched(size(rates)), follows
 
@@ -86,12 +91,12 @@ contains
     call take(equations, find_field(scene%fields, 'temperature'), solution%heat%content_error, heat)
     call take(equations, find_field(scene%fields, 'die_temperature'), solution%heat%die_error, heat)
     call take(equations, find_field(scene%fields, 'temperature'), solution%heat%temperature_error, before)
-    if (knows_phases(whole) .and. any(abs(before) > 0)) then
+    if (knows_phases(whole)) then
+      call content_beside(scene, equations, solution, dt, outcome%du, before, small, whole, taken, phases, by_end, touched, follows)
       temperatures = 0
-      call content_beside(scene, equations, solution, dt, outcome%du, before, temperatures, small, whole, taken, phases, touched, &
-                          follows)
-      if (follows) heat = merge(-taken - dt*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, &
-                                                     phases), heat, touched)
+      if (follows .and. any(abs(before) > 0)) &
+        heat = merge(-taken - dt*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, phases), &
+                     heat, touched)
     end if
     if (two_stages .and. any(abs(heat) > 0)) then
       call solve_correction(equations, 2*heat/length, temperatures, outcome%error, at_hand=.true.)
@@ -102,10 +107,7 @@ contains
     heat = heat + length*rates
     call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
-    if (knows_phases(whole)) then
-      call content_beside(scene, equations, solution, dt, outcome%du, before, temperatures, small, whole, taken, phases, touched, &
-                          follows)
-    end if
+    call add_by_temperature(scene, equations, by_end, temperatures, phases)
     heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, after, temperatures, mean_over, phases)
     call measure_error(scene, equations, solution, outcome%du, temperatures, unused, outcome%heat%error_now)
     where (equations%solves(equations%now)%equation == 0) heat = 0

@@ -15,6 +15,7 @@ module heat_in_system
   use solution, only: group_state_t, solution_t
   use step_outcome, only: outcome_t
   use strategy, only: scheme_tr_bdf2
+  use torch_error, only: add_torches, in_sum
   implicit none
   private
   public :: estimate_heat_in_system
@@ -34,7 +35,7 @@ contains
     type(path_piece_t) :: whole
     type(group_state_t), allocatable :: states(:)
     logical, allocatable :: active(:), is_own(:)
-    real(wp), dimension(equations%dofs%ndof) :: rest, before, after
+    real(wp), dimension(equations%dofs%ndof) :: rest, before, after, erred, mean
     integer :: s, g
 
     if (.not. (outcome%converged .and. solves_heat(scene, equations))) return
@@ -47,11 +48,15 @@ contains
     equations%solves(s)%is_own = of_heat(scene, equations)
     equations%solves(s)%active = active .and. acts_on_heat(scene, equations)
     rest = 0
+    erred = 0
+    mean = 0
     call flows(scene, equations, solution, 0.0_wp, rest, before, mean_over=dt)
+    call add_torches(scene, equations, [-0.5_wp, 0.5_wp], erred, mean)
     call flows(scene, equations, solution, dt, outcome%du, after, mean_over=dt)
+    call add_torches(scene, equations, [0.5_wp, 0.5_wp], erred, mean)
     call keep_piece(scene, equations, solution, dt, kept%element_force, whole)
-    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), after, .false., whole, outcome, &
-                        at_hand=outcome%iterations > 0)
+    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), in_sum(erred, mean), after, .false., whole, &
+                        outcome, at_hand=outcome%iterations > 0)
     equations%solves(s)%active = active
     equations%solves(s)%is_own = is_own
     do g = 1, size(states)

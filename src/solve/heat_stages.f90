@@ -22,6 +22,7 @@ module heat_stages
   use step_outcome, only: outcome_t
   use strategy, only: scheme_tr_bdf2
   use text, only: to_text
+  use torch_error, only: add_torches, in_sum
   use torch_steps, only: torch_step
   implicit none
   private
@@ -132,7 +133,7 @@ contains
     type(outcome_t), intent(out) :: outcome
     real(wp), intent(in), optional :: given(:)
     logical, intent(in), optional :: go_on
-    real(wp), dimension(equations%dofs%ndof) :: rest, before, after
+    real(wp), dimension(equations%dofs%ndof) :: rest, before, after, erred, mean
     type(evaluation_t) :: kept
     type(path_piece_t) :: whole
 
@@ -142,13 +143,17 @@ contains
     end if
     rest = 0
     call flows(scene, equations, solution, 0.0_wp, rest, before, mean_over=dt)
+    erred = 0
+    mean = 0
+    call add_torches(scene, equations, [-0.5_wp, 0.5_wp], erred, mean)
     call solve_step(scene, equations, solution, dt, outcome, given=given, go_on=go_on)
     if (.not. outcome%converged) return
     call keep_evaluation(equations, kept)
     call flows(scene, equations, solution, dt, outcome%du, after, mean_over=dt)
+    call add_torches(scene, equations, [0.5_wp, 0.5_wp], erred, mean)
     call keep_piece(scene, equations, solution, dt, kept%element_force, whole)
-    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), after, .false., whole, outcome, &
-                        at_hand=.not. scene%strategy%time_tolerance > 0 .and. outcome%iterations > 0)
+    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), in_sum(erred, mean), after, .false., whole, &
+                        outcome, at_hand=.not. scene%strategy%time_tolerance > 0 .and. outcome%iterations > 0)
     call return_to(kept, equations)
   end subroutine solve_one_stage
 
@@ -161,7 +166,7 @@ contains
     type(outcome_t), intent(out) :: outcome
     real(wp), intent(in), optional :: given(:)
     real(wp), dimension(equations%dofs%ndof, 0:2) :: g
-    real(wp), dimension(equations%dofs%ndof) :: start, external, left, heat
+    real(wp), dimension(equations%dofs%ndof) :: start, external, left, heat, erred, mean
     real(wp) :: passed(size(equations%buffers%force)), element_force(size(equations%buffers%force))
     type(evaluation_t) :: kept
     type(path_piece_t) :: piece, whole
@@ -171,7 +176,10 @@ contains
     call flows(scene, equations, solution, 0.0_wp, start, g(:, 0))
     if (present(given)) start = 2*diagonal*given
     passed = 0
+    erred = 0
+    mean = 0
     call add_passed(scene, equations, weights(0), passed)
+    call add_torches(scene, equations, [error_weights(0), weights(0)], erred, mean)
 
     equations%stage = stage_t(share=0.5_wp, reach=2*diagonal)
     call solve_step(scene, equations, solution, 2*diagonal*dt, first, left=g(:, 0), given=start)
@@ -184,6 +192,7 @@ contains
     call flows(scene, equations, solution, 2*diagonal*dt, first%du, g(:, 1), reach=2*diagonal)
     call keep_piece(scene, equations, solution, diagonal*dt, element_force, piece)
     call add_passed(scene, equations, weights(1), passed)
+    call add_torches(scene, equations, [error_weights(1), weights(1)], erred, mean)
 
     ! the temperatures go on as they went in the first stage
     start = first%du/(2*diagonal)
@@ -197,6 +206,7 @@ contains
 
     call keep_evaluation(equations, kept)
     call flows(scene, equations, solution, dt, outcome%du, g(:, 2))
+    call add_torches(scene, equations, [error_weights(2), weights(2)], erred, mean)
     call keep_piece(scene, equations, solution, diagonal*dt, kept%element_force, whole)
     call content_error_of_path(scene, equations, solution, dt, 2*diagonal, piece, whole, first%du, outcome%du, heat, &
                                outcome%heat%phases)
@@ -204,8 +214,8 @@ contains
     call take_passed(scene, equations, passed, kept%element_force)
     call external_forces(scene, equations%dofs, solution%time + dt, external)
     kept%force = merge(external + diagonal*(kept%force + left - external), kept%force, equations%solves(equations%now)%is_own)
-    call estimate_error(scene, equations, solution, dt, (matmul(g, error_weights) + heat/dt)/diagonal, g(:, 2), .true., whole, &
-                        outcome)
+    call estimate_error(scene, equations, solution, dt, (matmul(g, error_weights) + heat/dt)/diagonal, &
+                        in_sum(erred, mean)/diagonal, g(:, 2), .true., whole, outcome)
     call return_to(kept, equations)
   end subroutine solve_two_stages
 

@@ -13,17 +13,19 @@
 module kinetics_error
   use drivers, only: drivers_of_half, drivers_t
   use elem_api, only: block_done, instant_t, report_t
+  use elem_pl8tm, only: functions_of, functions_t
   use element_loop, only: gather_forces, run_elements
   use equations, only: equations_t
   use kinds, only: wp
   use law_api, only: heat_law
   use path_record, only: state_error_t
+  use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
   use step_instants, only: make_instant
   implicit none
   private
-  public :: content_beside, content_error_of_path, keep_piece, knows_phases, path_piece_t
+  public :: add_by_temperature, content_beside, content_error_of_path, keep_piece, knows_phases, path_piece_t
 
   !> A piece of a step.
   type :: path_piece_t
@@ -126,63 +128,111 @@ contains
     yes = allocated(piece%heat)
   end function knows_phases
 
-  !> What the heat content takes up more in a step, and what phases have more at its end, for errors at its start and of the
-  !> temperatures at its end. `touched` are the unknowns of points with kinetics. Element forces and states are kept.
-  subroutine content_beside(scene, equations, solution, dt, du, before, after, share, whole, heat, phases, touched, done)
+  !> What the heat content takes up more in a step, and what phases have more at its end, for errors at its start and none of the
+  !> temperatures at its end; and how phases there follow these temperatures, by the derivatives that the kinetics bring along.
+  !> `touched` are the unknowns of points with kinetics. Element forces and states are kept.
+  subroutine content_beside(scene, equations, solution, dt, du, before, share, whole, heat, phases, by_end, touched, done)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
-    type(solution_t), intent(in) :: solution       !! errors of the phases at the start of the step are in its groups
+    type(solution_t), intent(inout) :: solution    !! errors of the phases at the start of the step are in its groups
     real(wp), intent(in) :: dt                     !! [time]
     real(wp), intent(in) :: du(:)                  !! (ndof) motion of the step [unknown]
-    real(wp), intent(in) :: before(:), after(:)    !! (ndof) errors of the temperatures at both ends [temperature]
+    real(wp), intent(in) :: before(:)              !! (ndof) errors of the temperatures at its start [temperature]
     real(wp), intent(in) :: share                  !! of the errors, so small that all is linear
     type(path_piece_t), intent(in) :: whole        !! all of the step
     real(wp), intent(out) :: heat(:)               !! (ndof) [energy]
-    type(state_error_t), intent(out) :: phases(:)  !! (ngroup)
+    type(state_error_t), intent(out) :: phases(:)  !! (ngroup) at the end
+    type(state_error_t), intent(out) :: by_end(:)  !! (ngroup) derivative by the temperature of the point at the end
     logical, intent(out) :: touched(:)             !! (ndof)
     logical, intent(out) :: done                   !! false where the step cannot be made from there
-    type(solution_t) :: other
-    type(drivers_t), allocatable :: drivers(:)
+    type(group_state_t) :: kept(size(scene%groups))
     type(instant_t) :: instant
     type(report_t) :: report
     real(wp) :: element_force(size(equations%buffers%force)), magnitude(size(du)), none(0, 0)
-    logical :: holds(size(scene%groups)), active(size(scene%groups))
-    integer :: g, e
+    logical :: holds(size(scene%groups)), active(size(scene%groups)), vary(size(scene%groups))
+    integer :: g, e, n
 
     heat = 0
     touched = .false.
     holds = has_kinetics(scene, equations)
     active = equations%solves(equations%now)%active .and. has_heat_law(scene, equations)
-    other = solution
+    call make_instant(scene, equations, solution, dt, du, .false., instant)
+    instant%values = instant%values + share*before
+    instant%flow%n = 0
     do g = 1, size(holds)
-      if (.not. holds(g)) cycle
-      other%groups(g)%committed = other%groups(g)%committed + share*solution%groups(g)%error
+      if (.not. active(g)) cycle
+      if (.not. holds(g)) then
+        kept(g)%trial = solution%groups(g)%trial
+        cycle
+      end if
+      call move_alloc(solution%groups(g)%committed, kept(g)%committed)
+      call move_alloc(solution%groups(g)%trial, kept(g)%trial)
+      n = size(kept(g)%committed, 1)
+      ! with as many rows again the element states the derivatives
+      allocate (solution%groups(g)%trial(2*n, size(kept(g)%committed, 2), size(kept(g)%committed, 3)), source=0.0_wp)
+      solution%groups(g)%committed = kept(g)%committed + share*solution%groups(g)%error
       associate (dof => equations%dofs%groups(g)%dof)
         do e = 1, size(dof, 2)
           touched(dof(:, e)) = .true.
         end do
       end associate
     end do
-    allocate (drivers, source=equations%drivers)
-    drivers%vary = .false.
-    call make_instant(scene, equations, other, dt, du, .false., instant)
-    instant%values = instant%values + share*before
-    instant%flow%n = 0
+    vary = equations%drivers%vary
+    equations%drivers%vary = .false.
     element_force = equations%buffers%force
     associate (solve => equations%solves(equations%now), buffers => equations%buffers)
       call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, solve%pattern, &
-                        instant, du + share*(after - before), none, other, drivers, buffers, equations%timers, report)
+                        instant, du - share*before, none, solution, equations%drivers, buffers, equations%timers, report)
       done = report%status == block_done
       if (done) then
         buffers%force = merge((instant%dt*buffers%force - whole%heat)/share, 0.0_wp, of_groups(equations, active))
         call gather_forces(solve%pattern, buffers, solve%is_own, heat, magnitude)
-        do g = 1, size(holds)
-          if (holds(g)) phases(g)%value = (other%groups(g)%trial - whole%groups(g)%trial)/share
-        end do
       end if
       buffers%force = element_force
     end associate
+    equations%drivers%vary = vary
+    do g = 1, size(holds)
+      if (.not. active(g)) cycle
+      if (holds(g)) then
+        if (done) then
+          n = size(kept(g)%committed, 1)
+          phases(g)%value = (solution%groups(g)%trial(:n, :, :) - whole%groups(g)%trial)/share
+          by_end(g)%value = solution%groups(g)%trial(n + 1:, :, :)
+        end if
+        call move_alloc(kept(g)%committed, solution%groups(g)%committed)
+      end if
+      call move_alloc(kept(g)%trial, solution%groups(g)%trial)
+    end do
   end subroutine content_beside
+
+  !> Add to errors of phases at the end of a step what errors of the temperatures there make of them. Hardness follows the
+  !> fractions: it has no derivative of its own.
+  subroutine add_by_temperature(scene, equations, by_end, temperatures, phases)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(state_error_t), intent(in) :: by_end(:)      !! (ngroup) derivatives by the temperature of the point
+    real(wp), intent(in) :: temperatures(:)           !! (ndof) [temperature]
+    type(state_error_t), intent(inout) :: phases(:)   !! (ngroup)
+    type(quad8_rule_t) :: rule
+    type(functions_t) :: own
+    real(wp) :: at_points(9)
+    integer :: g, e, p, n
+
+    do g = 1, size(by_end)
+      if (.not. allocated(by_end(g)%value)) cycle
+      associate (dofs => equations%dofs%groups(g), npoint => scene%groups(g)%rule%n)
+        n = dofs%layout%count(1)   ! the temperature is the first of its unknowns
+        call quad8_rule(npoint, rule)
+        call functions_of(n == 4, rule, own)
+        do e = 1, size(dofs%dof, 2)
+          at_points(:npoint) = matmul(temperatures(dofs%dof(:n, e)), own%phi(:n, :npoint))
+          do p = 1, npoint
+            phases(g)%value(:, p, e) = phases(g)%value(:, p, e) + by_end(g)%value(:, p, e)*at_points(p)
+          end do
+        end do
+      end associate
+    end do
+  end subroutine add_by_temperature
 
   !> Groups that conduct heat (ngroup).
   pure function has_heat_law(scene, equations) result(yes)

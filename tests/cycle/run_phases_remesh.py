@@ -5,12 +5,14 @@ usage: run_phases_remesh.py [-v] [-k] [--all]
 
 - `given`: one temperature for the body (TEMPE), the law follows the kinetics (TIME): martensite is Koistinen and Marburger's at every
   point, whatever the mesh.
-- `driven`: the body conducts heat and has phases (META), which drive its mechanics: the end is that on the deck's own mesh.
+- `driven`: the body conducts heat and has phases (META), which drive its mechanics: the end is that on the deck's own mesh. Results show
+  the temperatures in the middle of sides as the means of their ends (BILINEAR) at every instant, the first on a new mesh too.
 - `stressed`: the same under stress on the kinetics (METAMEC), with flow by the rate in each phase (VISCO). With --all (half a minute) also alone,
   and in one system with the kinetics in the mechanics (MONOLITHIC, ISIG).
 - `history`: cooled into bainite by a TTT diagram or by the histories of a CCT diagram, heated until it is austenite and its grains grow, quenched, and
   tempered, with a new mesh in each of the four: fractions, Scheil sums, grains, hardness and Hollomon-Jaffe's parameter end as on the deck's own mesh.
 """
+import glob
 import math
 import os
 import sys
@@ -19,7 +21,10 @@ sys.dont_write_bytecode = True
 sys.path.append(os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "heat"))
 from hardening_steel import hardening_steel  # noqa: E402
 from remeshed import cycle, tries, within_limits  # noqa: E402
-from support import DONE, Checks, history, run, said, write  # noqa: E402
+from support import DONE, Checks, history, run, said, with_h5py, write  # noqa: E402
+
+with_h5py()
+import h5py  # noqa: E402
 
 STEEL = hardening_steel("base", 500, 1000)
 HEAD = """TITLE  Billet of a steel with phases
@@ -135,6 +140,17 @@ def remeshed(checks, name, text, steel=STEEL, times="0.45 0.75", kept=None):
     return rows
 
 
+def middles(checks, out):
+    """How far temperatures in the middle of sides are from the means of their ends, over their range."""
+    for path in sorted(glob.glob(os.path.join(out, "*.g??.h5"))):
+        with h5py.File(path) as file:
+            corners, middle = (file["mesh/topology"][:, k:k + 4] for k in (0, 4))
+            for name, instant in file["steps"].items():
+                t = instant["node/temperature"][:]
+                off = abs(t[middle] - 0.5*(t[corners] + t[corners[:, [1, 2, 3, 0]]])).max()
+                checks.that(off < 1e-9*(1 + t.max() - t.min()), f"{os.path.basename(path)}, step {name}: temperatures in the middle of sides", off)
+
+
 def stressed(checks):
     """Stress on the kinetics and flow by the rate, through new meshes."""
     by_rate = ISIG.replace(*BY_RATE[:2]).replace(*BY_RATE[2:])
@@ -154,6 +170,7 @@ def main():
         for column in ("z", "least", "most"):
             checks.that(abs(rows[column][-1] - exact) < 1e-10, f"given: {column}, Koistinen and Marburger", rows[column][-1])
     remeshed(checks, "driven", DRIVEN)
+    middles(checks, checks.path("driven", "new"))
     stressed(checks)
     for name, kinetics in (("ttt", TTT), ("cct", CCT)):
         remeshed(checks, f"history_{name}", HISTORY, steel_of(kinetics), "0.3 0.6 0.73 0.96", KEPT)

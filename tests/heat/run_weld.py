@@ -17,6 +17,7 @@ Gaussians (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 10.2; f
 - `motion`: a billet pressed flat (LOG) while a ring heats it, on one mesh and on three: the heat is still the stated one.
 - `whole`: a torch that crosses leaves its heat whatever the step and the scheme, exact to round-off, with a multiplier too; one that begins
   or ends in the plane is told.
+- `told`: the error in time that is told at the end is that against short steps.
 - `off`: a torch that leaves its body with power on stops the run and says why.
 """
 import csv
@@ -296,6 +297,31 @@ def whole(checks):
         checks.that(bool(said) == (share is not None) and all(share in line for line in said), f"whole: a torch that {name}: told or not", said)
 
 
+def told(checks):
+    """The error of heat in time that is told at the end is that against short steps: no heat of the torch is missing."""
+    def run(theta, step, path):
+        return Run(checks, f"told-{theta}-{step}-{len(path)}".replace(".", ""), HEAD.format(title="told", state="PLSTN")
+                   + "BLOCK bar PL8TM 4 steel BILINEAR\n   0. -0.02 0.03 -0.02 0.03 0. 0. 0.\n   12 1. 8 1.\n" + LAW
+                   + f"GOLDAK bar P {POWER/2} ETA {ETA} {AXES} {path}" + f"THETA {theta}\n" + steps(step, 8.0) + "END\n")
+
+    def temperatures(one):
+        with one.open() as file:
+            last = sorted(file["steps"])[-1]
+            return file[f"steps/{last}/node/temperature"][()].ravel()[file["mesh/topology"][:, :4]]
+
+    for name, path in (("crosses", f"WIDTH {WIDTH} INTO 0. -1. CROSS 0.005 3.\n   0. 0. 0.\n"),
+                       ("moves", "INTO 0. -1. \n   0. 0.004 0.\n   8. 0.026 0.\n")):
+        exact = run("TRBDF2", 0.01, path)
+        for theta, step in (("TRBDF2", 0.4), ("TRBDF2", 0.2), ("1.", 0.2)):
+            one = run(theta, step, path)
+            if not (one.ok and exact.ok):
+                continue
+            with open(os.path.join(one.out, "summary.json"), encoding="utf-8") as file:
+                end = json.load(file)["accuracy"]["heat"]["end"]
+            true = math.sqrt(np.mean((temperatures(one) - temperatures(exact))**2))
+            checks.that(0.4 < end/true < 2.5, f"told: a torch that {name}, {theta}, {step} s: error of heat at the end", (end, true, end/true))
+
+
 def main():
     """All of them."""
     checks = Checks()
@@ -307,6 +333,7 @@ def main():
     off(checks)
     long_steps(checks)
     whole(checks)
+    told(checks)
     checks.end()
 
 
