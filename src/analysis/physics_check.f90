@@ -175,7 +175,8 @@ contains
                  //': a die is walked with the part on the left (DIE)')
       else if (outlook%faces .and. outlook%over_side > largest_overlap) then
         call add(warnings, group%name//': the part begins '//to_text(outlook%depth, 3)//' deep in die '//die%name &
-                 //', '//to_text(100*outlook%over_side, 3)//' % of a side')
+                 //', '//to_text(100*outlook%over_side, 3)//' % of a side, all of it in the first step, however short: let ' &
+                 //'the die come from that far off (MOVE), or round what sticks in it')
       else if (moves(scene, group%die) .and. outlook%first < 0) then
         if (.not. met .and. unloaded(scene, group%die) .and. .not. expands(scene, laws)) &
           call add(warnings, group%name//': die '//die%name//' does not meet the part on all its way: moved the other way, ' &

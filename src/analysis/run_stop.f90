@@ -11,6 +11,7 @@ module run_stop
   use results, only: save_failure
   use run_record, only: run_t, save_all, at_end
   use scene, only: role_heat_contact, role_side_load, scene_t
+  use sliding_bodies, only: sliding_words
   use solution, only: solution_t
   use spurious_mode, only: may_stand_alone
   use step_outcome, only: outcome_t
@@ -37,7 +38,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late
     real(wp), allocatable :: residual(:, :)
-    character(len=:), allocatable :: where_at, advice, limit, what
+    character(len=:), allocatable :: where_at, advice, limit, what, slides
 
     where_at = ''
     if (outcome%group > 0) where_at = ', element '//to_text(outcome%element)//' of '//scene%groups(outcome%group)%name
@@ -54,9 +55,13 @@ contains
     ! attempts beyond a limit load lose the die too
     limit = limit_load_words(scene, solution, unheld%die == 0 .and. any(outcome%history%past_limit))
     if (unheld%die > 0 .and. limit == '') advice = advice//unheld_die_words(scene, solution, unheld)
+    slides = ''
+    if (.not. outcome%of_heat .and. unheld%die == 0) slides = sliding_words(scene, run%equations%loose, solution)
     if (outcome%of_heat) then
       advice = advice//'numbers that jump along the temperature, NORMS near round-off or a least step too large in ' &
                //'STRAT are the usual causes'
+    else if (slides /= '') then
+      advice = slides//'; '//advice//'a limit load'//way_past_limit(scene)//' is another cause'
     else if (unheld%die == 0 .or. limit /= '') then
       advice = sudden_load_words(scene, solution, at_release=.false.)//limit//advice//'a limit load'//way_past_limit(scene) &
                //', a mesh too distorted or a least step too large in STRAT are the usual causes'

@@ -10,6 +10,8 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 - A body that passes the plane in which it is held: in the summary.
 - A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die.
 - A steel without kinetics of austenite that is heated above Ac1: in the summary; not one that has them, nor one that only cools.
+- A body that friction alone holds and no longer can, on a table that tilts, between two plates, on another body: with code 3. Not a
+  body that friction holds and a limit load ends.
 - `KINEM SMALL` at large strain, with a body that flows and one that locks beyond its limit load, ends with code 3.
 - Probes of measures of stress against the components of the same point; of nodes that stand at one place.
 """
@@ -212,6 +214,7 @@ def stopped_run(checks):
               NO_CONVERGENCE)
     if run.ok:
         checks.that("WARNING before the run: billet.3/upper: the part begins 1 deep in die upper" in run.said, "what it says", run.said)
+        checks.that("let the die come from that far off (MOVE)" in run.said, "what to try", run.said)
 
 
 def free_dies(checks):
@@ -226,6 +229,52 @@ def free_dies(checks):
         if run.ok:
             checks.that(phrase in run.said, f"a free die, {name}: what it needs", run.said)
             checks.that(("SPRNG" in run.said) == ("SPRNG" in phrase), f"a free die, {name}: no more than that", run.said)
+
+
+RUBBED = """TITLE  A block that friction holds
+STATE  PLSTN
+KINEM  LOG
+BLOCK  block PL8LS 4 soft
+   {corners}
+   6 1.   3 1.
+LAW    soft {law}
+LAW    dry COUL2D
+   PENETR 1.E-3   PHI 0.25
+{table}LIC    weight
+   0. 0.   0.2 1.
+LIC    pull
+   0. 0.   0.2 0.   1. 1.
+STRAT  0.02 1.E-5 0.05   5 3
+END
+"""
+ALONG = f"{np.cos(0.3)!r} {np.sin(0.3)!r}".split()
+RUBBER, FLAT = "ELA\n   2000. 0.3", "0. 0.   20. 0.   20. 6.   0. 6."
+ON_DIE = "DIE    low\n   SEGM -20. 1.E-7   60. 1.E-7\nCNT2D  block 1 low 2 dry\n"
+ON_BODY = "BLOCK  low PL8LS 4 soft\n   -5. -5.   30. -5.   30. 0.   -5. 0.\n   9 1.   3 1.\nDIE    top SIDES low 3\nCNT2D  block 1 top dry\nFIXED  low 1 XY\n"
+# What holds the block; the time when friction gives way, a quarter of the weight.
+SLIDES = {
+    "on a die": (RUBBER, FLAT, ON_DIE + "TRACT  block 3 Y -5. weight\nTRACT  block 3 X 2.5 pull\n", 0.6),
+    "on a body": (RUBBER, FLAT, ON_BODY + "TRACT  block 3 Y -5. weight\nTRACT  block 3 X -2.5 pull\n", 0.6),
+    "between plates": (RUBBER, f"0. 0.   20*{ALONG[0]} 20*{ALONG[1]}   20*{ALONG[0]}-6*{ALONG[1]} 20*{ALONG[1]}+6*{ALONG[0]}   -6*{ALONG[1]} 6*{ALONG[0]}",
+                       f"DIE    low\n   SEGM -20*{ALONG[0]} -20*{ALONG[1]}   60*{ALONG[0]} 60*{ALONG[1]}\nDIE    up PILOT 0. 6.\n"
+                       f"   SEGM 60*{ALONG[0]}-6*{ALONG[1]} 60*{ALONG[1]}+6*{ALONG[0]}   -20*{ALONG[0]}-6*{ALONG[1]} 6*{ALONG[0]}-20*{ALONG[1]}\n"
+                       f"CNT2D  block 1 low dry\nCNT2D  block 3 up dry\nMOVE   up X weight 0.01*{ALONG[1]}\nMOVE   up Y weight -0.01*{ALONG[0]}\n"
+                       f"TRACT  block 2 X 20*{ALONG[0]} pull\nTRACT  block 2 Y 20*{ALONG[1]} pull\n", None)}
+
+
+def slides(checks):
+    """Bodies that slide away end with code 3 and are told as that, at the time of statics; a limit load is none."""
+    for name, (law, corners, table, time) in SLIDES.items():
+        run = Run(checks, "slides-" + name.replace(" ", "-"), RUBBED.format(law=law, corners=corners, table=table), NO_CONVERGENCE)
+        if not run.ok:
+            continue
+        checks.that("block slides away: friction bears no more" in run.said, f"a block {name}: slides away", run.said)
+        if time:
+            checks.small(abs(run.history["time"][-1]/time - 1), 2e-3, f"a block {name}: when")
+    run = Run(checks, "flows", RUBBED.format(law="EPLA\n   2000. 0.3\n   LINEAR 5. 0.", corners=FLAT, table=ON_DIE
+                                            + "TRACT  block 3 Y -10. pull\nTRACT  block 3 X 0.1 weight\n"), NO_CONVERGENCE)
+    if run.ok:
+        checks.that("slides away" not in run.said and "a limit load (LOADF" in run.said, "a block pressed to its limit: no slide", run.said)
 
 
 def warned_cycle(checks):
@@ -488,6 +537,7 @@ def main():
     decks(checks)
     warned_run(checks)
     stopped_run(checks)
+    slides(checks)
     free_dies(checks)
     warned_cycle(checks)
     idle(checks)
