@@ -7,8 +7,8 @@
 !> by one share of the difference between their bodies, at which the heat of all is what it was. Points that were there
 !> are free of strains at the new temperature, as those that come are: the strain of cooling down is that of the heat too.
 module laid_bodies
-  use elem_pl8tm, only: functions_of, functions_t
   use fields, only: find_field, has_corners_only
+  use heat_points, only: functions_of, functions_t
   use kinds, only: eps, wp
   use law_api, only: driver_count, driver_temperature, heat_law, law_t
   use point_temperatures, only: temperature_field

@@ -10,8 +10,8 @@
 module elem_heat_source
   use elem_api, only: block_inverted, elem_t, first_unknown, instant_t, layout_t, mode_advance, no_variables, report_t, that_reads
   use elem_heat_sides, only: flow_in
-  use elem_pl8tm, only: functions_of, functions_t, heat_points_t, place_element
   use fields, only: displacement_field
+  use heat_points, only: functions_of, functions_t, heat_points_t, place_element
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t

@@ -6,7 +6,7 @@
 module elem_weld_source
   use elem_api, only: block_inverted, block_without_source, elem_t, instant_t, layout_t, mode_advance, no_variables, report_t, &
                       that_reads
-  use elem_pl8tm, only: functions_of, functions_t
+  use heat_points, only: functions_of, functions_t
   use kinds, only: pi, wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t

@@ -9,8 +9,8 @@
 !> change of volume by the option MEAN, and the section's own motion in generalised plane strain.
 module plastic_heat
   use elem_api, only: instant_t, layout_t, mode_advance
-  use elem_pl8tm, only: functions_of, functions_t, heat_points_t, place_element
   use fields, only: displacement_field
+  use heat_points, only: functions_of, functions_t, heat_points_t, place_element
   use heat_sources, only: share_of_work, work_heated
   use kinds, only: wp
   use point_temperatures, only: nodal_temperatures, projected_functions, temperature_place

@@ -13,9 +13,9 @@
 module kinetics_error
   use drivers, only: drivers_of_half, drivers_t
   use elem_api, only: block_done, instant_t, report_t
-  use elem_pl8tm, only: functions_of, functions_t
   use element_loop, only: gather_forces, run_elements
   use equations, only: equations_t
+  use heat_points, only: functions_of, functions_t
   use kinds, only: wp
   use law_api, only: heat_law
   use path_record, only: state_error_t

@@ -444,6 +444,7 @@ contains
 
     !> What the attempt has found: an equilibrium, unless the step is too long for it to be taken.
     subroutine conclude()
+      logical :: lost
       if (together) call end_exchange(equations, exchange)
       outcome%augmentations = made%times
       outcome%gave_way = made%gave_way
@@ -466,7 +467,9 @@ contains
         outcome%converged = .false.
         outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
       end if
-      if (outcome%converged .and. is_lost_way()) then
+      lost = outcome%converged
+      if (lost) lost = is_lost_way()
+      if (lost) then
         outcome%converged = .false.
         outcome%reason = to_text(outcome%iterations)//' iterations, '//trim(merge('in which a part jumped free of its dies', &
                             'in the first step                      ', solution%last_step > 0))//': they may have lost their way'
