@@ -40,10 +40,9 @@ module line_search
   private
   public :: manner_t, real_fall, search_along, short_share
 
-  !> How to search: take the whole whatever the residual, or find the zero along the correction more closely, and if need be by many
-  !> trials.
+  !> How to search: take the whole whatever the residual, or find the zero along the correction more closely.
   type :: manner_t
-    logical :: whole = .false., closely = .false., many = .false., exactly = .false., downhill = .false.
+    logical :: whole = .false., closely = .false., exactly = .false., downhill = .false.
   end type manner_t
 
   !> A search that ends below this share of the correction is short.
@@ -51,8 +50,8 @@ module line_search
   real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp, search_exactly_above = 0.02_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
-  !> A closer search on a body that friction holds has to find the one place where a point sticks that elsewhere slips one way or
-  !> the other: it is as short as the elastic slip, a hundredth of the motion of a step or less.
+  !> A closer search has to find the one place where a point sticks that elsewhere slips one way or the other: it is as short as
+  !> the elastic slip, a hundredth of the motion of a step or less.
   integer, parameter :: max_searches = 6, max_close_searches = 20, max_touches = 12, max_exact_searches = 30
   !> From one share to the next, where a die was lost; there are `max_touches` of them at most.
   real(wp), parameter :: tenth = 0.1_wp
@@ -94,7 +93,7 @@ contains
     touching = 0
     missed = 0
     lost = loses_a_die(scene, solution)
-    most = merge(max_close_searches, max_searches, manner%closely .and. manner%many)
+    most = merge(max_close_searches, max_searches, manner%closely)
     if (lost) most = max_touches
     if (manner%exactly .or. manner%downhill) most = max_exact_searches
     do k = 1, most

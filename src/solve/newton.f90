@@ -347,8 +347,7 @@ contains
       manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0 .and. .not. long, &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       ! a body that contact alone holds is about to slip
-      manner%many = size(equations%loose) > 0
-      if (long .and. manner%many .and. solution%last_step > 0) manner%closely = .true.
+      if (long .and. size(equations%loose) > 0 .and. solution%last_step > 0) manner%closely = .true.
       if (steep) manner = manner_t(exactly=.true.)
       if (equations%downhill) manner = manner_t(downhill=.true.)
       ! forces with contact kept are no measure of those without; past a limit point the way to equilibrium leads up and down
