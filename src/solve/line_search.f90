@@ -16,9 +16,7 @@
 !> the step: it comes of a matrix that hardly resists it, as where all points that hold a part are about to slip.
 !>
 !> Where points of contact change to and fro, the corrections from the states on both sides of the change go too far
-!> in turns; the caller may ask for a closer search, which stops between them. So does one from where all points that hold
-!> a part slip: nothing but friction resists its motion along the dies, the correction is longer than the motion of the step, and
-!> each point turns from slip one way to slip the other at a place of its own on it.
+!> in turns; the caller may ask for a closer search, which stops between them.
 !>
 !> Past a limit point the residual grows along a way that leads downhill: the zero is sought further on, and no fall of the whole
 !> residual will do.
@@ -50,9 +48,7 @@ module line_search
   real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp, search_exactly_above = 0.02_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
-  !> A closer search has to find the one place where a point sticks that elsewhere slips one way or the other: it is as short as
-  !> the elastic slip, a hundredth of the motion of a step or less.
-  integer, parameter :: max_searches = 6, max_close_searches = 20, max_touches = 12, max_exact_searches = 30
+  integer, parameter :: max_searches = 6, max_touches = 12, max_exact_searches = 30
   !> From one share to the next, where a die was lost; there are `max_touches` of them at most.
   real(wp), parameter :: tenth = 0.1_wp
   !> A share that touches the die is short enough when one that does not is longer than this part of it.
@@ -93,8 +89,7 @@ contains
     touching = 0
     missed = 0
     lost = loses_a_die(scene, solution)
-    most = merge(max_close_searches, max_searches, manner%closely)
-    if (lost) most = max_touches
+    most = merge(max_touches, max_searches, lost)
     if (manner%exactly .or. manner%downhill) most = max_exact_searches
     do k = 1, most
       du = start + trial*correction + missing
