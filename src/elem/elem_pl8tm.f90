@@ -60,7 +60,7 @@ contains
   pure function of_temperature() result(unknown)
     type(unknown_t) :: unknown
 
-    unknown%field = field_t(name='temperature', unit='temperature', dual='heat_conduction', dual_unit='power', word='T', &
+    unknown%field = field_t(name='temperature', unit='temperature', dual='heat_flow', dual_unit='power', word='T', &
                             quantity='temperature', transfer=transfer_nodal, imposed_as_value=.true.)
   end function of_temperature
 
