@@ -4,6 +4,7 @@
 !> the order of nodes in a list, which annex 2 (fig. 4) shows to fail where contact begins and ends.
 module boundary_curves
   use arcs, only: arc_t
+  use ascending, only: count_up_to
   use boundary_sides, only: loop_t
   use kinds, only: wp
   use offset_parabolas, only: closest_xi, length_between, point_at, tangent_at, xi_at_length
@@ -149,21 +150,12 @@ contains
     real(wp), intent(in) :: arc_length   !! [length]
     type(position_t) :: position
     real(wp) :: rest
-    integer :: low, high, middle
+    integer :: before
 
     rest = modulo(arc_length, boundary_length(boundary))
-    low = 0
-    high = size(boundary%arcs)
-    do while (high - low > 1)
-      middle = (low + high)/2
-      if (boundary%arc_length(middle) <= rest) then
-        low = middle
-      else
-        high = middle
-      end if
-    end do
-    position%arc = high
-    position%xi = xi_at_length(boundary%arcs(high), rest - boundary%arc_length(low))
+    before = count_up_to(boundary%arc_length(1:size(boundary%arcs) - 1), rest)
+    position%arc = before + 1
+    position%xi = xi_at_length(boundary%arcs(before + 1), rest - boundary%arc_length(before))
   end function position_at_arc_length
 
   !> Position closest to a point; of two equally close ones the first along the curve.

@@ -4,6 +4,7 @@
 !> begins: these are ends of elements. A side along an interface has breaks at corners of the interface.
 module side_curves
   use arcs, only: arc_t, straight
+  use ascending, only: count_up_to
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, joint_after, kind_corner, kind_entry, kind_exit, &
                              kind_joint, point_on, position_at_arc_length, position_t
   use kinds, only: wp
@@ -331,19 +332,10 @@ contains
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: n
     real(wp) :: s
-    integer :: low, high, middle
+    integer :: k
 
-    low = 0
-    high = ubound(curve%count, 1)
-    do while (high - low > 1)
-      middle = (low + high)/2
-      if (curve%count(middle) <= n) then
-        low = middle
-      else
-        high = middle
-      end if
-    end do
-    s = curve%at(low) + (curve%at(high) - curve%at(low))*(n - curve%count(low))/(curve%count(high) - curve%count(low))
+    k = count_up_to(curve%count(1:ubound(curve%count, 1) - 1), n)
+    s = curve%at(k) + (curve%at(k + 1) - curve%at(k))*(n - curve%count(k))/(curve%count(k + 1) - curve%count(k))
   end function length_at
 
 end module side_curves

@@ -30,19 +30,8 @@ contains
 
     n = own%n
     m = merge(n, npoint, lumped)
-    before = 0
-    now = 0
-    if (lumped) then
-      before(driver_temperature, :n) = start
-      now(driver_temperature, :n) = start + change
-    else
-      if (size(drivers, 1) > 1) then
-        before(2:, :npoint) = drivers(2:, 1, :)
-        now(2:, :npoint) = drivers(2:, 2, :)
-      end if
-      before(driver_temperature, :npoint) = matmul(start, own%phi(:n, :npoint))
-      now(driver_temperature, :npoint) = matmul(start + change, own%phi(:n, :npoint))
-    end if
+    call drive(own, npoint, lumped, drivers(:, 1, :), start, before)
+    call drive(own, npoint, lumped, drivers(:, 2, :), start + change, now)
     call law%store(material, before(:, :m), now(:, :m), taken(:m), capacity(:m))
     taken(:m) = taken(:m)/instant%dt
     capacity(:m) = capacity(:m)/instant%dt
@@ -65,6 +54,24 @@ contains
     end if
   end subroutine add_content
 
+  !> What drives the law: at the corners the temperature alone, where the content is lumped there; else all at the points.
+  pure subroutine drive(own, npoint, lumped, drivers, temperatures, given)
+    type(functions_t), intent(in) :: own
+    integer, intent(in) :: npoint
+    logical, intent(in) :: lumped
+    real(wp), intent(in) :: drivers(:, :)      !! (ndriver, npoint)
+    real(wp), intent(in) :: temperatures(:)    !! (n)
+    real(wp), intent(out) :: given(:, :)       !! (ndriver, 9)
+
+    given = 0
+    if (lumped) then
+      given(driver_temperature, :own%n) = temperatures
+    else
+      if (size(drivers, 1) > 1) given(2:, :npoint) = drivers(2:, :)
+      given(driver_temperature, :npoint) = matmul(temperatures, own%phi(:own%n, :npoint))
+    end if
+  end subroutine drive
+
   !> Square of an error of the heat content over the least heat capacity of the material, so that latent heat counts as heat; and of
   !> the temperatures themselves.
   pure subroutine add_error(law, material, npoint, own, lumped, place, drivers, change, now, report)
@@ -82,14 +89,11 @@ contains
 
     n = own%n
     m = merge(n, npoint, lumped)
-    given = 0
+    call drive(own, npoint, lumped, drivers(:, 2, :), now, given)
     if (lumped) then
-      given(driver_temperature, :n) = now
       error(:n) = change
       volume(:n) = matmul(own%phi(:n, :npoint), place%dv0(:npoint))
     else
-      if (size(drivers, 1) > 1) given(2:, :npoint) = drivers(2:, 2, :)
-      given(driver_temperature, :npoint) = matmul(now, own%phi(:n, :npoint))
       error(:npoint) = matmul(change, own%phi(:n, :npoint))
       volume(:npoint) = place%dv0(:npoint)
     end if

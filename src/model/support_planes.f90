@@ -14,7 +14,7 @@ module support_planes
 
 contains
 
-  !> The plane through a point, as `y = 0 (FIXED bar.1 Y)`; empty where there is none.
+  !> The plane through a point, as `y = 0`; empty where there is none.
   pure function plane_beside(scene, point) result(words)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: point(2)   !! [length]
@@ -28,7 +28,7 @@ contains
       c = scene%fixations(f)%component
       associate (first => scene%mesh%origin(:, scene%fixations(f)%nodes))
         if (abs(point(c) - first(c, 1)) > beside*(maxval(first(3 - c, :)) - minval(first(3 - c, :)))) cycle
-        words = axes(c:c)//' = '//to_text(first(c, 1), 4)//' (FIXED '//scene%fixations(f)%label//')'
+        words = axes(c:c)//' = '//to_text(first(c, 1), 4)
         return
       end associate
     end do

@@ -5,6 +5,7 @@
 !> ferrite and pearlite, 2 for bainite, Q = 27 500 cal/mol. The sum of rate dt is additive: the state is S itself. S is tabulated
 !> over q, X = q^(5/3)/(q^(5/3) + (1-q)^(5/3)), in which it has finite slopes at both ends, and is cubic between.
 module li_kinetics
+  use ascending, only: count_up_to
   use dual_numbers, only: dual_t, exp, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp
   use steels, only: bainite, celsius_zero, composition_t, el_c, el_cr, el_mn, el_mo, el_ni, el_si, ferrite, gas_constant, &
@@ -183,19 +184,10 @@ contains
     real(wp), intent(in) :: total(:), slope(:), sum_of_share
     real(wp), intent(out) :: q, by_s
     real(wp) :: u, value, derivative, low, high
-    integer :: n, k, above, middle, iteration
+    integer :: n, k, iteration
 
     n = size(total) - 1
-    k = 1
-    above = n + 1
-    do while (above - k > 1)
-      middle = (k + above)/2
-      if (total(middle) <= sum_of_share) then
-        k = middle
-      else
-        above = middle
-      end if
-    end do
+    k = 1 + count_up_to(total(2:n), sum_of_share)
     low = 0
     high = 1
     u = (sum_of_share - total(k))/(total(k + 1) - total(k))

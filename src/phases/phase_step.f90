@@ -6,6 +6,7 @@
 !> in [0, 1]; austenite is what is left.
 !> Where stress acts on the kinetics (stress_kinetics), it is linear in time between both ends of the step.
 module phase_step
+  use ascending, only: count_up_to
   use austenite_decomposition, only: cool_by_histories, transform
   use dual_numbers, only: dual_t, log, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp
@@ -127,24 +128,6 @@ contains
     first = high
     last = low
   end subroutine find_nodes
-
-  !> How many of ascending numbers, all different, are not above a number.
-  pure function count_up_to(nodes, x) result(n)
-    real(wp), intent(in) :: nodes(:), x
-    integer :: n
-    integer :: above, middle
-
-    n = 0
-    above = size(nodes) + 1
-    do while (above - n > 1)
-      middle = (n + above)/2
-      if (nodes(middle) <= x) then
-        n = middle
-      else
-        above = middle
-      end if
-    end do
-  end function count_up_to
 
   !> Parts into which sub-steps are divided: a function of the state at the start and of the length of the step alone, so that it
   !> stands still while the end temperature is iterated.

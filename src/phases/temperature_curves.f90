@@ -3,6 +3,7 @@
 !> A table is linear between its temperatures, or linear in the logarithm of its values (times of transformation, which range over
 !> decades), and constant outside. A polynomial holds at any temperature; where it may be used is stated with what uses it.
 module temperature_curves
+  use ascending, only: count_up_to
   use dual_numbers, only: dual_t, exp, operator(*), operator(+)
   use kinds, only: wp
   implicit none
@@ -128,18 +129,8 @@ contains
   pure function interval_of(t, x) result(k)
     real(wp), intent(in) :: t(:), x
     integer :: k
-    integer :: above, middle
 
-    k = 1
-    above = size(t)
-    do while (above - k > 1)
-      middle = (k + above)/2
-      if (t(middle) <= x) then
-        k = middle
-      else
-        above = middle
-      end if
-    end do
+    k = 1 + count_up_to(t(2:size(t) - 1), x)
   end function interval_of
 
 end module temperature_curves
