@@ -73,6 +73,8 @@ contains
     call direction_along(field%thin, x, direction, reach)
     if (.not. any(abs(direction) > 0)) return
     along = size_at(field%lengths, material, x)
+    ! where the width has limits of its own, so many times that as elsewhere
+    along = min(along, across*field%lengths%limits%largest/field%limits%largest)
     ! from squares at the ends of the part it grows as sizes do
     if (along > across) along = min(along, across + slope_of(field%limits%gradation)*reach)
     stretch = 0.5_wp*log(max(along/across, 1.0_wp))*direction

@@ -41,7 +41,7 @@ contains
     type(old_mesh_t), intent(in), optional :: learned   !! with `first`: sizes that a run on such a mesh has asked for
     type(state_pieces_t) :: pieces
     type(transfer_mesh_t) :: mesh
-    type(old_mesh_t) :: old
+    type(old_mesh_t) :: old, narrow
     type(size_limits_t) :: limits, longer
     type(size_window_t), allocatable :: windows(:)
     type(need_t), allocatable :: needs(:), misfits(:)
@@ -91,7 +91,9 @@ contains
       end do
     end if
     if (size(windows) > 0) old%origin = scene%mesh%origin
-    call set_up_sizes(limits, needs, sizes, old, windows)
+    narrow = old
+    call keep_across(scene, pieces, narrow%requested)
+    call set_up_sizes(limits, needs, sizes, narrow, windows)
     call let_be_longer(old)
 
   contains
@@ -109,6 +111,25 @@ contains
     end subroutine let_be_longer
 
   end subroutine requested_sizes
+
+  !> A number of elements across slender bodies: they bend.
+  pure subroutine keep_across(scene, pieces, requested)
+    type(scene_t), intent(in) :: scene
+    type(state_pieces_t), intent(in) :: pieces
+    real(wp), intent(inout) :: requested(:)   !! (nelem) in the order of the pieces [length]
+    real(wp) :: thickness
+    integer :: g, last, first
+
+    if (.not. (scene%remesher%across_slender > 0 .and. allocated(scene%remesher%own_mesh%thickness))) return
+    last = 0
+    do g = 1, size(pieces%groups)
+      first = last + 1
+      last = last + size(pieces%groups(g)%connectivity, 2)
+      if (pieces%groups(g)%scene_group > size(scene%remesher%own_mesh%thickness)) cycle
+      thickness = scene%remesher%own_mesh%thickness(pieces%groups(g)%scene_group)
+      if (thickness > 0) requested(first:last) = min(requested(first:last), thickness/scene%remesher%across_slender)
+    end do
+  end subroutine keep_across
 
   !> Length of elements in thin parts at most. A first mesh, of which nothing is known but its contours, has no longer ones than
   !> squares as a body that is not thin would have (`remesh_defaults`).

@@ -8,9 +8,10 @@ module cards_remesh
   use fields, only: displacement_field
   use kinds, only: wp
   use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, scaled_jacobian, stroke_t
+  use own_mesh_sizes, only: complete_options
   use remesh_defaults, only: default_narrow => narrow, set_default_limits, set_default_sizes
   use remesher_options, only: has_contours
-  use remesher_rows, only: complete_options, make_sizes_finer, read_remesher_row, remesher_words
+  use remesher_rows, only: make_sizes_finer, read_remesher_row, remesher_words
   use remesher_windows, only: read_window
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use state_variables, only: name_of_ratio, state_variable, state_variable_t, total_components, transfer_scalar
@@ -52,7 +53,7 @@ contains
       if (has_contours(draft%scene%remesher)) call set_default_sizes(draft%scene%remesher)
       if (abs(draft%mesh_factor - 1) > 0) call make_sizes_finer(draft%mesh_factor, draft%scene%remesh, draft%scene%remesher)
     end if
-    call complete_options(draft%scene%remesher)
+    call complete_options(draft%mesh_factor, draft%scene%remesher)
     if (draft%groups_sound .and. draft%scene%remesh%on) call keep_volume_ratios(draft)
   end subroutine read_remesh
 

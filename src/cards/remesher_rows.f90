@@ -1,20 +1,15 @@
-!> Rows of REMSH on how the new mesh is made, and their default values.
-!>
-!> Sizes and numbers that are not given follow the mesh of the deck itself, however often it has been remeshed since: the choice
-!> of that mesh states how fine the mesh should be.
+!> Rows of REMSH on how the new mesh is made.
 module remesher_rows
   use acceptance, only: acceptance_t
-  use block_mesh, only: polygon_area
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
-  use mesh_parts, only: mesh_parts_t
   use remeshing, only: never, remesh_rules_t
-  use remesher_options, only: by_free, by_gmsh, has_zones, own_mesh_t, remesher_options_t
+  use remesher_options, only: by_free, by_gmsh, has_zones, remesher_options_t
   use scene_draft, only: words_of
   use text, only: string_t
   implicit none
   private
-  public :: remesher_words, read_remesher_row, make_sizes_finer, measure_own_mesh, complete_options
+  public :: remesher_words, read_remesher_row, make_sizes_finer
 
   !> In the order of `read_remesher_row`.
   character(len=*), parameter :: remesher_words = 'STRAIN SIZE COUNT ACROSS TURN STRETCH TRANSFER ACCEPT TRIES MESHER'
@@ -28,13 +23,6 @@ module remesher_rows
   integer, parameter :: fewest_neighbours = 8, most_neighbours = 64
   !> Longer elements than this are past the limit of `ASPECT` soon (remesh_defaults).
   real(wp), parameter :: largest_stretch = 5.0_wp
-  !> Smallest and largest elements over those of the deck's own mesh, and how many times as many elements there may be.
-  real(wp), parameter :: smallest_share = 0.4_wp, largest_share = 2.5_wp
-  !> The smallest element where a die bends over the smallest elsewhere, and the angle by which sides turn there over that
-  !> elsewhere. A bend of small radius that sides do not follow shapes the part otherwise than the die does, and what leaves it may
-  !> not touch the die any more.
-  real(wp), parameter :: share_at_bends = 0.4_wp, turn_at_bends = 0.5_wp
-  integer, parameter :: growth = 3
 
 contains
 
@@ -143,28 +131,6 @@ contains
     end select
   end subroutine read_transfer
 
-  !> Elements of the mesh that the cards make, and their mean size: the side of a square of the mean area.
-  pure function measure_own_mesh(parts) result(own)
-    type(mesh_parts_t), intent(in) :: parts
-    type(own_mesh_t) :: own
-    real(wp) :: area
-    integer :: b, e
-
-    own%smallest = merge(huge(area), 0.0_wp, parts%sound .and. size(parts%bodies) > 0)
-    if (parts%sound) then
-      do b = 1, size(parts%bodies)
-        associate (connectivity => parts%bodies(b)%connectivity)
-          own%elements = own%elements + size(connectivity, 2)
-          do e = 1, size(connectivity, 2)
-            area = abs(polygon_area(parts%coordinates(:, connectivity(1:4, e))))
-            own%smallest = min(own%smallest, sqrt(area))
-            own%largest = max(own%largest, sqrt(area))
-          end do
-        end associate
-      end do
-    end if
-  end function measure_own_mesh
-
   !> New meshes of a run with so many times the deck's elements along a line: what the cards say of sizes, and of errors that
   !> fall with them, that of strains with the square of the size, that of the stress with the size at least (accuracy_laws). What
   !> they do not say follows the deck's own mesh, which is as much finer.
@@ -185,21 +151,5 @@ contains
     options%turn_at_dies = options%turn_at_dies/factor
     if (rules%stress_error < never) rules%stress_error = rules%stress_error/factor
   end subroutine make_sizes_finer
-
-  !> What was not given is taken from the deck's own mesh. A smallest size that is given holds at bends of dies too.
-  pure subroutine complete_options(options)
-    type(remesher_options_t), intent(inout) :: options
-
-    associate (own => options%own_mesh)
-      if (.not. options%largest > 0) then
-        options%smallest = smallest_share*own%smallest
-        options%largest = largest_share*own%largest
-        options%smallest_at_bends = share_at_bends*options%smallest
-        options%turn_at_dies = min(options%turn_at_dies, turn_at_bends*options%turn)
-      end if
-      if (.not. options%smallest_at_bends > 0) options%smallest_at_bends = options%smallest
-      if (options%most_elements == 0) options%most_elements = growth*own%elements
-    end associate
-  end subroutine complete_options
 
 end module remesher_rows

@@ -37,10 +37,10 @@ module scene_reader
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
   use patch_checks, only: settle_patches
+  use own_mesh_sizes, only: measure_own_mesh
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
   use remesher_options, only: has_contours
-  use remesher_rows, only: measure_own_mesh
   use scene, only: role_die_heat, scene_t
   use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects

@@ -22,6 +22,8 @@ module remesher_options
     integer :: elements = 0
     !> Sizes of the smallest and the largest element [length].
     real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
+    !> Thickness of each body that is slender, or of the part that it is joined to; 0 of others (nbody) [length].
+    real(wp), allocatable :: thickness(:)
   end type own_mesh_t
 
   type :: remesher_options_t
@@ -44,6 +46,8 @@ module remesher_options
     !> [radian].
     integer :: across_contact = 4
     real(wp) :: turn = pi/12, turn_at_dies = pi/12
+    !> Elements across a slender body; 0: as they come.
+    real(wp) :: across_slender = 0.0_wp
     !> Mesher.
     integer :: mesher = as_it_comes
     !> When a mesh is refused, and other ways tried then.

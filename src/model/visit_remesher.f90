@@ -37,6 +37,7 @@ contains
     call visitor%member('strain_error', self%strain_error, kept, '-', low=tiny(1.0_wp))
     call visitor%member('most_elements', self%most_elements, kept, low=0)
     call visitor%member('across_contact', self%across_contact, kept, low=0)
+    call visitor%member('across_slender', self%across_slender, kept, '-', low=0.0_wp)
     call visitor%member('turn', self%turn, kept, 'radian', low=tiny(1.0_wp), high=pi/2)
     call visitor%member('turn_at_dies', self%turn_at_dies, kept, 'radian', low=tiny(1.0_wp), high=pi/2)
     call visitor%member('stretch', self%stretch, kept, '-', low=1.0_wp)
@@ -80,10 +81,20 @@ contains
   subroutine visit_own_mesh(visitor, self)
     class(visitor_t), intent(inout) :: visitor
     type(own_mesh_t), intent(inout) :: self
+    integer :: b, n
 
     call visitor%member('elements', self%elements, kept, low=0)
     call visitor%member('smallest', self%smallest, kept, 'length', low=0.0_wp)
     call visitor%member('largest', self%largest, kept, 'length', low=0.0_wp)
+    n = 0
+    if (allocated(self%thickness)) n = size(self%thickness)
+    call visitor%list('bodies', n, most_parts)
+    if (.not. allocated(self%thickness)) allocate (self%thickness(n))
+    do b = 1, n
+      call visitor%enter_item('bodies', b)
+      call visitor%member('thickness', self%thickness(b), kept, 'length', low=0.0_wp)
+      call visitor%leave('bodies')
+    end do
   end subroutine visit_own_mesh
 
   !> A name of constant length.

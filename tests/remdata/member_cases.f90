@@ -194,7 +194,8 @@ contains
         options%tries = 6
         options%windows = [mesh_window_t(low=[0.1_wp, 0.2_wp], high=[0.3_wp, 0.5_wp], smallest=0.02_wp, largest=0.04_wp, &
                                          by_matter=.true., die=1)]
-        options%own_mesh = own_mesh_t(12, 0.3_wp, 0.6_wp)
+        options%own_mesh = own_mesh_t(12, 0.3_wp, 0.6_wp, [0.9_wp, 0.8_wp])
+        options%across_slender = 4.0_wp
         allocate (options%marks(1), options%zones(1), options%contours(1), options%cuts(1))
         options%marks(1) = zone_mark_t(name='corner', form=mark_crossing, x=[0.3_wp, 0.4_wp], axis=1, pick=-1, by_matter=.true., &
                                        die=1, stays=.true.)
