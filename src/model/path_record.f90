@@ -18,6 +18,8 @@ module path_record
     logical :: estimated = .false., interpolated = .false., above = .false.
     !> Its motion, and the error of that, in the root mean square over the nodes [length].
     real(wp) :: motion = 0.0_wp, motion_error = 0.0_wp
+    !> What it dissipates, in the mean of the points of bodies that flow [energy/length^3].
+    real(wp) :: flowed = 0.0_wp
     !> At its end: errors of the places of nodes and of the states (path_stress), and the norm of that of the stress; not known
     !> where they could not be carried on.
     real(wp), allocatable :: error(:, :)   !! (2, nnode) [length]
@@ -62,10 +64,10 @@ module path_record
     integer :: estimated = 0, shortened = 0, above = 0
     !> Steps still to come whose lengths are not bounded by their errors, and how many after the next that is shortened in vain.
     integer :: unbounded = 0, patience = 1
-    !> Steps still to come that may do without an estimate, as long as they are no longer than this [time], and bend no more than
-    !> this share of their motion.
+    !> Steps still to come that may do without an estimate, as long as they are no longer than this [time], flow no more than this
+    !> [energy/length^3], and bend no more than this share of their motion.
     integer :: quiet = 0
-    real(wp) :: quiet_length = 0.0_wp, quiet_bend = 0.0_wp
+    real(wp) :: quiet_length = 0.0_wp, quiet_flow = 0.0_wp, quiet_bend = 0.0_wp
     !> Of the steps without one since the last estimate: sums of length, length squared, and length times motion.
     real(wp) :: pending_time = 0.0_wp, pending_square = 0.0_wp, pending_motion = 0.0_wp
     !> Of the last estimate: error of the motion over length times motion [1/time], of the stress over length squared.
@@ -118,6 +120,7 @@ contains
 
     record%quiet = settling_steps
     record%quiet_length = huge(record%quiet_length)
+    record%quiet_flow = huge(record%quiet_flow)
     record%quiet_bend = huge(record%quiet_bend)
   end subroutine settle_path
 
@@ -198,6 +201,8 @@ contains
     record%pending_square = 0
     record%pending_motion = 0
     record%quiet_length = min(step%spare/ample, most_quiet + 1.0_wp)*dt
+    ! an elastic step says nothing of those in which flow begins
+    record%quiet_flow = min(step%spare/ample, most_quiet + 1.0_wp)*step%flowed
     record%quiet_bend = max(bends_more*step%bend, least_bend)
     if (.not. step%above) record%quiet = int(max(min(step%spare/ample - 1, real(most_quiet, wp)), 0.0_wp))
   end subroutine note_path_step

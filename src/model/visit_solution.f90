@@ -174,6 +174,7 @@ contains
     call visitor%member('patience', self%patience, kept, low=1)
     call visitor%member('quiet', self%quiet, kept, low=0)
     call visitor%member('quiet_length', self%quiet_length, kept, 'time', low=0.0_wp)
+    call visitor%member('quiet_flow', self%quiet_flow, kept, 'stress', low=0.0_wp)
     call visitor%member('quiet_bend', self%quiet_bend, kept, '-', low=0.0_wp)
     call visitor%member('pending_time', self%pending_time, kept, 'time', low=0.0_wp)
     call visitor%member('pending_square', self%pending_square, kept, 'time^2', low=0.0_wp)

@@ -4,7 +4,8 @@
 !> stress is bounded as what has come of all steps so far, for creep forgets what was before and elastic unloading keeps it. Where
 !> that is used up a step may add its share of the time to it, or of the stress that it changes, so that the run goes on.
 !>
-!> Where a step could be many times as long, a few steps after it do without an estimate, unless one is longer or bends more.
+!> Where a step could be many times as long, a few steps after it do without an estimate, unless one is longer, flows more or bends
+!> more.
 !>
 !> Where a part hangs on single points of contact that change, errors do not come of the path, and do not fall with the step: a
 !> step that was shortened in vain is accepted, counted as above the bound, and the steps after it are left alone for a while.
@@ -18,6 +19,7 @@ module path_bounds
   use path_stress, only: carry_errors_in_quiet
   use scene, only: scene_t
   use solution, only: solution_t
+  use state_variables, only: find_variable
   use step_outcome, only: outcome_t
   use strategy, only: strategy_t
   use text, only: to_text
@@ -60,7 +62,8 @@ contains
     call equations%timers%add('path error', timer)
     call equations%timers%start(timer)
     outcome%path%bend = bend_of(equations, solution, dt, outcome%du)
-    quiet = is_quiet(scene, solution, dt, outcome%path%bend, last)
+    outcome%path%flowed = flow_of_step(scene, has_path(scene, equations%laws), solution)
+    quiet = is_quiet(scene, solution, dt, outcome%path, last)
     if (quiet) then
       call go_on_in_quiet(equations, solution%path, dt, outcome)
       call carry_errors_in_quiet(scene, equations, solution, has_path(scene, equations%laws), dt, outcome)
@@ -82,22 +85,45 @@ contains
   end subroutine judge_path
 
   !> The step needs no estimate. The last one of the run has one, and those before and after a corner of a multiplier.
-  pure function is_quiet(scene, solution, dt, bend, last) result(yes)
+  pure function is_quiet(scene, solution, dt, step, last) result(yes)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: dt     !! [time]
-    real(wp), intent(in) :: bend   !! of the path (bend_of)
-    logical, intent(in) :: last    !! step of the run
+    real(wp), intent(in) :: dt              !! [time]
+    type(path_step_t), intent(in) :: step   !! its flow and bend are known
+    logical, intent(in) :: last             !! step of the run
     logical :: yes
 
     associate (record => solution%path)
-      yes = record%quiet > 0 .and. dt <= record%quiet_length .and. bend <= record%quiet_bend &
-            .and. .not. (record%tried_length > 0 .or. last)
+      yes = record%quiet > 0 .and. dt <= record%quiet_length .and. step%flowed <= record%quiet_flow &
+            .and. step%bend <= record%quiet_bend .and. .not. (record%tried_length > 0 .or. last)
       ! on a new mesh in any case
       if (yes .and. record%quiet_bend < huge(record%quiet_bend)) &
         yes = .not. (at_corner(scene, solution%time) .or. at_corner(scene, solution%time + dt))
     end associate
   end function is_quiet
+
+  !> What a step dissipates at the points of bodies that flow, in the mean over them: 0 where they are elastic.
+  pure function flow_of_step(scene, active, solution) result(flowed)
+    type(scene_t), intent(in) :: scene
+    logical, intent(in) :: active(:)           !! (ngroup) bodies whose laws flow
+    type(solution_t), intent(in) :: solution   !! its trial state is that of the step
+    real(wp) :: flowed                         !! [energy/length^3]
+    integer :: g, k, n
+
+    flowed = 0
+    n = 0
+    do g = 1, size(active)
+      if (.not. active(g)) cycle
+      k = find_variable(scene%groups(g)%variables, 'plastic_work')
+      if (k == 0) cycle
+      k = scene%groups(g)%variables(k)%first
+      associate (state => solution%groups(g))
+        flowed = flowed + sum(abs(state%trial(k, :, :) - state%committed(k, :, :)))
+        n = n + size(state%trial(k, :, :))
+      end associate
+    end do
+    flowed = flowed/max(n, 1)
+  end function flow_of_step
 
   !> A step without an estimate: its motion, and how much longer the next may be.
   subroutine go_on_in_quiet(equations, record, dt, outcome)

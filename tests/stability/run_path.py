@@ -10,7 +10,7 @@ and by default. `estimated`: the same and an upset billet with steps of one leng
 over the error against a run of short steps (`effectivity`), of the motion in the mean square over the nodes, of the stress as its own.
 `carried`: the error of the stress that the closing table tells, over the difference to a run with steps of 1/16, where a load rises, rests,
 goes on more slowly, turns and lets go: tubes under pressure, bent beams, a cantilever with a moved end, plastic and in creep; a cylinder that cools, its temperatures known.
-`heated`: the same of cylinders whose temperatures, and phases, are found by implicit Euler: their errors are in that of the stress; `elastic`: the same where no law flows.
+`begun`: after elastic steps those in which flow begins have an estimate. `heated`: the same of cylinders whose temperatures, and phases, are found by implicit Euler: their errors are in that of the stress; `elastic`: the same where no law flows.
 `tight`: bounds of 1/16 and 1/64. `free`: elastic and uniform plastic bars take the steps they take without bounds, elastic ones on any way. Long steps that a deck allows end with a warning.
 """
 import csv
@@ -218,6 +218,35 @@ STRAT  0.1 1.E-6 2.   40 3
 {{more}}END
 """
 
+# A plate that a torch crosses: nothing moves before, and all flows within a few steps.
+CROSSED = f"""TITLE  A plate that a torch crosses
+STATE  GPLSTN 1.
+KINEM  LOG
+BLOCK  part PL8LS 4 m
+   0. 0.   20. 0.   20. 6.   0. 6.
+   8 4.   4 0.5
+LAW    m ARBTHMET
+   STEEL {STEEL} stable
+   STRESS 1.   TIME 1.
+ADDEL  part PL8TM heat BILINEAR
+LAW    heat META
+   STEEL {STEEL} stable
+   ENERGY 1.
+START  T 20.
+SECTN  E FREE
+SECTN  KX HELD
+SECTN  KY FREE
+FIXED  part 4 X
+FIXED  POINT 20. 0. Y
+GOLDAK part P 0.7E6 ETA 0.8 FRONT 3. REAR 6. WIDTH 4. DEPTH 4. INTO 0. -1. CROSS 6. 4.
+   0. 0. 6.
+CONVE  part 1 2 3 H 0.03 TS 20.
+THETA  TRBDF2 TOL {{tol}}
+STRAT  0.01 1.E-6 20.   14 9   0.25 1.5
+STOP   4.5
+END
+"""
+
 # Another side goes to and fro meanwhile.
 BENT = """LIC    aside
    0. 0.   0.7 0.   1.3 1.   2. -1.
@@ -386,6 +415,16 @@ def elastic(checks):
         checks.that(HEATED[0] <= told/true <= HEATED[1], f"elastic, {step:g} s, {more.split()[-1:]}: told error of the stress", told/true)
 
 
+def begun(checks):
+    """Steps in which flow begins after elastic ones have an estimate: they have no error to go by."""
+    for tol in (20., 5.):
+        run = Run(checks, "begun", CROSSED.format(tol=tol))
+        if run.ok:
+            first = next(k for k, work in enumerate(run.history["plastic_work"]) if work > 0)
+            told = run.history["path_error_motion"][first]
+            checks.that(told > 1e-3, f"begun, TOL {tol:g}: error of the motion of the first step that flows", told)
+
+
 def tight(checks):
     """Bounds of 1/16 and 1/64 of the default: they are kept, at four times the steps, and few attempts are made in vain."""
     print(f"\n{'tight':22s} {'bound':>9s} {'steps':>6s} {'in vain':>8s} {'told':>9s} {'error':>9s}")
@@ -495,6 +534,7 @@ def main():
         carried(checks)
         heated(checks)
         elastic(checks)
+        begun(checks)
         tight(checks)
         free(checks)
         warned(checks)
