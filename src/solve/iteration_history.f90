@@ -19,6 +19,8 @@ module iteration_history
     logical :: flow_changed = .false.
     !> Iterations on the unknowns of a patch that was eliminated (nonlinear_elimination); 0 where none was.
     integer :: inner = 0
+    !> The share was searched closely, since contact was in turmoil.
+    logical :: closely = .false.
     !> The whole correction was taken, whatever the residual, after searches that were all short.
     logical :: watched = .false.
     !> The matrix led uphill: the state is past a limit point (pseudo_transient).
@@ -40,12 +42,14 @@ module iteration_history
   real(wp), parameter :: falling = 0.7_wp
   !> Nor is a step cut whose last two iterations each brought the residual to this share.
   real(wp), parameter :: about_to_end = 0.1_wp
-  !> As long as a sheet peels off a die, point by point, contact changes in each iteration, corrections are whole, and the best of
-  !> the last `peeling_window` is below this share of the best before: the number of points ends it.
+  !> As long as a sheet peels off a die, point by point, contact changes in each iteration, and the best of the last
+  !> `peeling_window` is below this share of the best before: the number of points ends it. Single searches may be short on the way.
   real(wp), parameter :: peeling = 0.97_wp
   integer, parameter :: peeling_window = 3*patience
   !> Residuals of one state that comes again differ by this share at most.
   real(wp), parameter :: same_state = 2.0e-3_wp
+  !> Circles of more iterations are not looked for.
+  integer, parameter :: longest_circle = 6
   !> So many more iterations are made for the balance of heat.
   integer, parameter :: for_balance = 2
   !> Heat through contact is linearised along the motion where the residual is below this (contact_heat_tangent).
@@ -199,22 +203,26 @@ contains
     if (.not. falls_on) return
     associate (now => history(n - patience + 1:), norms => history%force_norm)
       falls_on = any(now%contact_changed) .and. minval(now%force_norm) < falling*minval(norms(2:n - patience))
-      if (n > peeling_window + 2) falls_on = falls_on .or. all(now%contact_changed .and. now%line_search >= 1) .and. &
+      if (n > peeling_window + 2) falls_on = falls_on .or. all(now%contact_changed) .and. &
                                              minval(norms(n - peeling_window + 1:)) < peeling*minval(norms(2:n - peeling_window))
     end associate
   end function falls_on
 
-  !> Contact changes to and fro between two states, and whole corrections lead from each to the other.
+  !> Contact changes in a circle of two states or a few more: the residuals of the last iterations are those of some before.
   pure function goes_to_and_fro(history)
     type(iteration_t), intent(in) :: history(:)   !! (niteration)
     logical :: goes_to_and_fro
-    integer :: n
+    integer :: n, period
 
     n = size(history)
-    goes_to_and_fro = n > 5
-    if (goes_to_and_fro) goes_to_and_fro = all(history(n - 3:)%contact_changed) &
-                                           .and. all(abs(history(n - 2:n)%force_norm - history(n - 4:n - 2)%force_norm) &
-                                                     <= same_state*history(n - 2:n)%force_norm)
+    goes_to_and_fro = .false.
+    associate (norms => history%force_norm)
+      do period = 2, min(longest_circle, n - 4)
+        if (.not. any(history(n - period + 1:)%contact_changed)) cycle
+        goes_to_and_fro = all(abs(norms(n - 2:) - norms(n - period - 2:n - period)) <= same_state*norms(n - 2:))
+        if (goes_to_and_fro) return
+      end do
+    end associate
   end function goes_to_and_fro
 
   !> Reason to stop the iterations, if there is one.

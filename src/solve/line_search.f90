@@ -16,7 +16,9 @@
 !> the step: it comes of a matrix that hardly resists it, as where all points that hold a part are about to slip.
 !>
 !> Where points of contact change to and fro, the corrections from the states on both sides of the change go too far
-!> in turns; the caller may ask for a closer search, which stops between them.
+!> in turns; the caller may ask for a closer search, which stops between them. So does one from where all points that hold
+!> a part slip: nothing but friction resists its motion along the dies, the correction is longer than the motion of the step, and
+!> each point turns from slip one way to slip the other at a place of its own on it.
 !>
 !> Past a limit point the residual grows along a way that leads downhill: the zero is sought further on, and no fall of the whole
 !> residual will do.
@@ -38,9 +40,10 @@ module line_search
   private
   public :: manner_t, real_fall, search_along, short_share
 
-  !> How to search: take the whole whatever the residual, or find the zero along the correction more closely.
+  !> How to search: take the whole whatever the residual, or find the zero along the correction more closely, and if need be by many
+  !> trials.
   type :: manner_t
-    logical :: whole = .false., closely = .false., exactly = .false., downhill = .false.
+    logical :: whole = .false., closely = .false., many = .false., exactly = .false., downhill = .false.
   end type manner_t
 
   !> A search that ends below this share of the correction is short.
@@ -48,7 +51,9 @@ module line_search
   real(wp), parameter :: search_above = 0.8_wp, search_closely_above = 0.3_wp, search_exactly_above = 0.02_wp
   !> A share of the correction is taken when the whole residual falls to this part of what it was.
   real(wp), parameter :: real_fall = 0.5_wp
-  integer, parameter :: max_searches = 6, max_touches = 12, max_exact_searches = 30
+  !> A closer search on a body that friction holds has to find the one place where a point sticks that elsewhere slips one way or
+  !> the other: it is as short as the elastic slip, a hundredth of the motion of a step or less.
+  integer, parameter :: max_searches = 6, max_close_searches = 20, max_touches = 12, max_exact_searches = 30
   !> From one share to the next, where a die was lost; there are `max_touches` of them at most.
   real(wp), parameter :: tenth = 0.1_wp
   !> A share that touches the die is short enough when one that does not is longer than this part of it.
@@ -89,7 +94,8 @@ contains
     touching = 0
     missed = 0
     lost = loses_a_die(scene, solution)
-    most = merge(max_touches, max_searches, lost)
+    most = merge(max_close_searches, max_searches, manner%closely .and. manner%many)
+    if (lost) most = max_touches
     if (manner%exactly .or. manner%downhill) most = max_exact_searches
     do k = 1, most
       du = start + trial*correction + missing

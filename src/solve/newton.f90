@@ -21,6 +21,7 @@ module newton
                                iteration_t, judge, was_given_time, went_round
   use jumped_bodies, only: has_jumped
   use kinds, only: wp
+  use law_api, only: contact_stick
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along
   use nonlinear_elimination, only: take_eliminated
@@ -328,6 +329,7 @@ contains
         call set_cause(report, outcome)
         return
       end if
+      line%closely = manner%closely .and. .not. taken
       line%watched = caught(outcome%history(first:)) .and. manner%whole .or. equations%let_go
       call note_contact(scene, solution, contact, line%contact_changed)
       call note_flow(scene, solution, flows, line%flow_changed)
@@ -340,10 +342,14 @@ contains
     function manner_of_search(followed) result(manner)
       logical, intent(in) :: followed   !! the correction follows the heat content
       type(manner_t) :: manner
+      logical :: long
 
-      manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0 &
-                              .and. relative_motion(equations, solution%fields, correction, outcome%du) < 1, &
+      long = relative_motion(equations, solution%fields, correction, outcome%du) >= 1
+      manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0 .and. .not. long, &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
+      ! a body that contact alone holds slips at all of its points
+      manner%many = size(equations%loose) > 0 .and. .not. any(contact == contact_stick)
+      if (long .and. manner%many .and. solution%last_step > 0) manner%closely = .true.
       if (steep) manner = manner_t(exactly=.true.)
       if (equations%downhill) manner = manner_t(downhill=.true.)
       ! forces with contact kept are no measure of those without; past a limit point the way to equilibrium leads up and down
@@ -482,7 +488,8 @@ contains
 
     !> The first motion was found by many corrections that went too far: none before it says where the way leads, and of a slender
     !> part past its load of buckling there are several equilibria, all stable; such corrections may end in any (those that find
-    !> contact are taken whole). A later one was found by many corrections at the end of which a part has jumped out of its dies.
+    !> contact are taken whole, or searched closely). A later one was found by many corrections at the end of which a part has
+    !> jumped out of its dies.
     function is_lost_way() result(is)
       logical :: is
 
@@ -493,7 +500,9 @@ contains
         is = outcome%iterations > sure_way*scene%strategy%max_iterations
         if (is) is = has_jumped(scene, equations, solution, dt, external)
       else
-        is = count(outcome%history%line_search < 1) > sure_way*scene%strategy%max_iterations
+        associate (too_far => outcome%history%line_search < 1 .and. .not. outcome%history%closely)
+          is = count(too_far) > sure_way*scene%strategy%max_iterations
+        end associate
       end if
     end function is_lost_way
 

@@ -74,6 +74,24 @@ def sheets_on_rollers(checks):
     return worst
 
 
+def under_a_bead(checks):
+    """A strip on two tables, one end held along them, that a bead between them begins to press down: its long free part lies on its
+    table, and turns up against a plate point by point, in any step. The force on the bead is that of sides half as long."""
+    forces = []
+    for n, friction in ((40, 0.1), (80, 0.1), (40, 0.0), (80, 0.0)):
+        run = checks.run(f"bead-{n}-{friction}", deck(
+            "PLSTN", "LOG", f"BLOCK b PL8LS 4 m\n -60. 0. 20. 0. 20. 1. -60. 1.\n {n} 1. 2 1.\n",
+            f"LAW m EPLA\n 200000. 0.3\n SWIFT 500. 0.01 0.2\nLAW k COUL2D\n PENETR 2.E-2 PHI {friction}\n",
+            "DIE bead PILOT 0. 1.\n SEGM 5. 31. 5. 6.\n ARC 5. 6. 0. 1. -5. 6. 1.E-3\n SEGM -5. 6. -5. 31.\n"
+            "DIE left\n SEGM -90. 0. -6.1 0.\n FILLT 3. 1.E-3\n SEGM -6.1 0. -6.1 -40.\n"
+            "DIE right\n SEGM 6.1 -40. 6.1 0.\n FILLT 3. 1.E-3\n SEGM 6.1 0. 90. 0.\n"
+            "DIE plate\n SEGM -7. 1.02 -90. 1.02\nDIE plates\n SEGM 90. 1.02 7. 1.02\n"
+            "CNT2D b 3 bead k\nCNT2D b 1 left k\nCNT2D b 1 right k\nCNT2D b 3 plate k\nCNT2D b 3 plates k\n"
+            "FIXED b 2 X\nMOVE bead Y go\nLIC go\n 0. 0. 0.3 -1.5\n", "STRAT 0.01 1.E-6 0.02 5 3"))
+        forces.append(abs(run.history["force_y_bead"][-1]))
+    return max(abs(forces[0]/forces[1] - 1), abs(forces[2]/forces[3] - 1))
+
+
 def creeping_strip_let_go(checks):
     """A strip without elastic limit, bent between rollers and let go by the upper one: nothing holds it while it creeps back, and
     it does so in few iterations however slender it is. The die that goes back has no force."""
@@ -117,5 +135,6 @@ def hook(checks):
 
 CASES = (Case("free billets under dies that lean", free_billets, 1e-3), Case("free strip on rollers", free_strip, 1e-4),
          Case("creeping strip let go", creeping_strip_let_go, 1e-9), Case("heated and free", heated_free, 1e-5),
+         Case("strip under a bead", under_a_bead, 0.1),
          Case("sheets on rollers", sheets_on_rollers, 5e-4),
          Case("hook past a ledge", hook, 1e-2))
