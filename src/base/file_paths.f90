@@ -2,7 +2,7 @@
 module file_paths
   implicit none
   private
-  public :: base_name, directory_of, join_path
+  public :: base_name, directory_of, join_path, plain_path
 
 contains
 
@@ -47,5 +47,31 @@ contains
     path = directory//'/'//name
     if (directory(len(directory):) == '/') path = directory//name
   end function join_path
+
+  !> `a/./b/../c` -> `a/c`, so that a cycle is seen whatever way it is written.
+  pure function plain_path(path) result(plain)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: plain
+    integer :: first, past, cut
+
+    plain = ''
+    first = 1
+    do while (first <= len(path))
+      past = first + index(path(first:)//'/', '/') - 1
+      select case (path(first:past - 1))
+      case ('.')
+      case ('..')
+        cut = index(plain, '/', back=.true.)
+        if (cut == 0 .or. plain(cut + 1:) == '..') then
+          plain = plain//'/..'
+        else
+          plain = plain(:cut - 1)
+        end if
+      case default
+        plain = plain//'/'//path(first:past - 1)
+      end select
+      first = past + 1
+    end do
+  end function plain_path
 
 end module file_paths
