@@ -1,9 +1,9 @@
 !> Steps, elements and seconds of a run of some fineness, as they grow between its pilots.
 module accuracy_costs
-  use accuracy_laws, only: sample_t, shortest_steps
   use accuracy_rules, only: fineness_t
   use cost_file, only: ntask
   use kinds, only: wp
+  use pilot_differences, only: sample_t, shortest_steps
   implicit none
   private
   public :: elements_of, expected_seconds, grown_seconds

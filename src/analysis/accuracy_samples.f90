@@ -1,7 +1,6 @@
 !> What a run of a deck with ACCURACY leaves for the choice of another one: its fineness and cost in `NAME.cost`, and its history.
 module accuracy_samples
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use accuracy_laws, only: sample_t
   use accuracy_rules, only: fineness_t
   use cost_file, only: cost_t, ntask, read_cost, write_cost
   use csv_reader, only: read_csv
@@ -9,6 +8,7 @@ module accuracy_samples
   use errors, only: error_t, exit_input, fail
   use hash, only: sha256
   use kinds, only: wp
+  use pilot_differences, only: sample_t
   use probes, only: probe_maximum, probe_minimum
   use run_options, only: run_options_t, stem_of
   use run_version, only: version_text
