@@ -4,7 +4,7 @@ module run_ending
   use accuracy_rules, only: fineness_t
   use accuracy_samples, only: add_cost, read_sample
   use blas, only: blas_build, blas_core_name
-  use closing_table, only: close_cycle, close_run
+  use closing_facts, only: close_cycle, close_run
   use confinement, only: warn_of_confinement
   use cost_file, only: cost_t
   use crossed_bodies, only: warn_of_crossed_bodies
