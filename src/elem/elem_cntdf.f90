@@ -16,7 +16,8 @@ module elem_cntdf
   use contact_penalties, only: allowed_penetration
   use contact_point, only: penalties
   use contact_state, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, rest, show_on_axis
-  use curve_search, only: box_distance, closest_facing_point
+  use curve_boxes, only: box_distance
+  use curve_search, only: closest_facing_point
   use dies, only: die_t
   use edge_contact, only: press_edges
   use edge_release, only: edge_release_t, slide_past_edge, slide_past_end
