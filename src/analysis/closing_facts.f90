@@ -14,7 +14,8 @@ module closing_facts
   use accuracy_plan, only: accuracy_t
   use cost_file, only: cost_t, ntask
   use csv_reader, only: read_csv
-  use energy_books, only: energy_without_strain, is_drag_alone
+  use energy_balance, only: is_drag_alone
+  use energy_round_off, only: energy_without_strain
   use equations, only: equations_t
   use errors, only: error_t
   use estimator, only: estimator_t, set_up_estimator, stress_error_now
