@@ -18,7 +18,8 @@ module closing_facts
   use energy_round_off, only: energy_without_strain
   use equations, only: equations_t
   use errors, only: error_t
-  use estimator, only: estimator_t, set_up_estimator, stress_error_now
+  use estimator, only: stress_error_now
+  use estimator_parts, only: estimator_t, set_up_estimator
   use fields, only: displacement_field
   use heat_books, only: has_heat
   use kinds, only: wp
