@@ -2,7 +2,7 @@
 module file_paths
   implicit none
   private
-  public :: base_name, directory_of, join_path, plain_path
+  public :: base_name, directory_of, join_path, path_beside, plain_path
 
 contains
 
@@ -73,5 +73,14 @@ contains
       first = past + 1
     end do
   end function plain_path
+
+  !> `name` seen from the folder of the file `path`, in the way that is written; an absolute name stays as it is.
+  pure function path_beside(path, name) result(beside)
+    character(len=*), intent(in) :: path, name
+    character(len=:), allocatable :: beside
+
+    beside = name
+    if (index(name, '/') /= 1) beside = path(:index(path, '/', back=.true.))//name
+  end function path_beside
 
 end module file_paths

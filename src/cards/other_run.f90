@@ -14,7 +14,7 @@ module other_run
   use run_temperatures, only: elements_of_body, read_run_temperatures, run_temperatures_t
   use scene_draft, only: draft_t, words_of
   use shape_functions, only: quad8
-  use system, only: directory_of, join_path
+  use system, only: path_beside
   use text, only: string_t, to_text
   implicit none
   private
@@ -40,7 +40,7 @@ contains
     call cursor%word('the file of a run, NAME.g01.h5', file)
     if (cursor%failed()) return
     call list_body_elems(elems, conducting, 'temperature')
-    call read_run_temperatures(join_path(directory_of(deck_path), file), conducting, run, error)
+    call read_run_temperatures(path_beside(deck_path, file), conducting, run, error)
     if (allocated(error)) call cursor%fail(error%message)
   end subroutine read_file_of_run
 

@@ -11,7 +11,7 @@ module steel_files
   use run_temperatures, only: read_run_temperatures, run_temperatures_t, temperatures_digest
   use steel_reader, only: read_steels
   use steels, only: steel_t
-  use system, only: directory_of, join_path
+  use system, only: path_beside
   use text, only: string_t, upper_case
   implicit none
   private
@@ -37,7 +37,7 @@ contains
     call cursor%word('the file of the steel', file)
     if (cursor%failed()) return
     mistakes = diagnostics%count()
-    call read_steels(join_path(directory_of(deck_path), file), overrides, steels, diagnostics)
+    call read_steels(path_beside(deck_path, file), overrides, steels, diagnostics)
     if (diagnostics%count() > mistakes) then
       call cursor%fail('the file of the steel has mistakes')
       return
@@ -70,7 +70,7 @@ contains
         associate (fields => deck%cards(i)%rows(j)%fields)
           if (size(fields) < 2) cycle
           if (fields(1)%numeric .or. fields(2)%numeric .or. fields(1)%text /= 'STEEL') cycle
-          call read_deck(join_path(directory_of(deck%path), fields(2)%text), overrides, file, ignored)
+          call read_deck(path_beside(deck%path, fields(2)%text), overrides, file, ignored)
           call fingerprint_text(file, more)
           text = text//more
         end associate
@@ -93,7 +93,7 @@ contains
     if (fields(2)%numeric .or. fields(3)%numeric .or. upper_case(fields(2)%text) /= 'FROM') return
     call list_elems(elems)
     call list_body_elems(elems, conducting, 'temperature')
-    call read_run_temperatures(join_path(directory_of(deck%path), fields(3)%text), conducting, run, error)
+    call read_run_temperatures(path_beside(deck%path, fields(3)%text), conducting, run, error)
     if (allocated(error)) return
     call temperatures_digest(run, digest)
     text = text//fields(3)%text//' '//digest

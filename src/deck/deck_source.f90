@@ -4,7 +4,7 @@ module deck_source
   use diagnostics, only: diagnostics_t, location_t
   use kinds, only: i8
   use source_lines, only: append_line, end_of_line, source_t
-  use system, only: directory_of, join_path, plain_path
+  use system, only: path_beside, plain_path
   use text, only: string_t, to_text, upper_case
   implicit none
   private
@@ -135,7 +135,7 @@ contains
       column = fields(1)%column
       path = fields(1)%text
       if (index(path, '$') > 0) failure = 'the name of an included file takes no parameter'
-      path = join_path(directory_of(open_files(depth)%s), path)
+      path = path_beside(open_files(depth)%s, path)
       do i = 1, depth
         if (plain_path(open_files(i)%s) == plain_path(path)) failure = ''''//path//''' includes itself'
       end do
