@@ -1,14 +1,15 @@
 !> Steps, elements and seconds of a run of some fineness, as they grow between its pilots.
 module accuracy_costs
-  use accuracy_laws, only: sample_t, shortest_steps
   use accuracy_rules, only: fineness_t
   use cost_file, only: ntask
   use kinds, only: wp
+  use timers, only: ledger_t
+  use pilot_differences, only: sample_t, shortest_steps
   implicit none
   private
-  public :: elements_of, expected_seconds, grown_seconds
+  public :: cost_of_elements, elements_of, expected_seconds, seconds_by_task
 
-  !> How seconds go with the number of elements (closing_table): tasks of elements, contact, factorisation; what is no task,
+  !> How seconds go with the number of elements (closing_facts): tasks of elements, contact, factorisation; what is no task,
   !> such as files; and the remesher (its growth is measured by tests/bench/remdata_bench.py).
   real(wp), parameter :: task_exponents(ntask) = [1.0_wp, 0.5_wp, 1.5_wp, 0.0_wp, 1.0_wp]
 
@@ -96,6 +97,31 @@ contains
 
     grown = sum(seconds*factor**task_exponents)
   end function grown_seconds
+
+  !> Time over that of a run with so many times its elements, in as many steps and iterations; 1 where no seconds are known.
+  pure function cost_of_elements(seconds, factor) result(cost)
+    real(wp), intent(in) :: seconds(ntask)   !! by tasks [s]
+    real(wp), intent(in) :: factor
+    real(wp) :: cost
+
+    cost = 1
+    if (sum(seconds) > 0) cost = grown_seconds(seconds, factor)/sum(seconds)
+  end function cost_of_elements
+
+  !> Seconds of what has a timer, by tasks; those of no task and of the remesher have none.
+  function seconds_by_task(timers) result(seconds)
+    type(ledger_t), intent(in) :: timers
+    real(wp) :: seconds(ntask)   !! [s]
+    integer :: t, n
+
+    seconds = 0
+    do t = 1, timers%size()
+      n = 1
+      if (timers%name(t) == 'contact') n = 2
+      if (timers%name(t) == 'factorisation') n = 3
+      seconds(n) = seconds(n) + timers%seconds(t)
+    end do
+  end function seconds_by_task
 
   !> Exponent of a growth over a factor, from 0 up to a largest one.
   pure function growth(from, to, factor, largest) result(exponent)

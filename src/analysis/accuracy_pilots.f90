@@ -2,7 +2,6 @@
 !> A pilot that is there already, of the same deck and program, is not made again. Those of a deck with REMSH need new meshes,
 !> which the solver does not make: it asks `lagacycle` for one after the other (`NAME.pilot`, exit code 7).
 module accuracy_pilots
-  use accuracy_laws, only: sample_t
   use accuracy_plan, only: accuracy_plan_t, fineness_words
   use accuracy_rules, only: fineness_t, stress_name
   use accuracy_samples, only: key_of, read_sample, select_columns
@@ -11,6 +10,7 @@ module accuracy_pilots
   use errors, only: error_t, exit_done, exit_input, exit_no_convergence, exit_pilot, fail
   use exact_numbers, only: exact_text
   use kinds, only: wp
+  use pilot_differences, only: sample_t
   use run_options, only: run_options_t, stem_of
   use scene, only: scene_t
   use standard_streams, only: print_line

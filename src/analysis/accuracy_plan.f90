@@ -1,10 +1,12 @@
 !> A run of a deck with ACCURACY: how fine it is, what is expected of it, and what it has reached.
 module accuracy_plan
   use accuracy_costs, only: elements_of, expected_seconds
-  use accuracy_laws, only: accuracy_law_t, asked_for, choose_fineness, difference, errors_of, sample_t
+  use accuracy_laws, only: accuracy_law_t, errors_of
   use accuracy_rules, only: fineness_t
+  use fineness_choice, only: asked_for, choose_fineness
   use json_writer, only: json_t
   use kinds, only: wp
+  use pilot_differences, only: difference, sample_t
   use text, only: add_text, join, string_t, to_text
   implicit none
   private

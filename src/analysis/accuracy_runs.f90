@@ -1,12 +1,14 @@
 !> The pilots of a deck with ACCURACY: short runs that measure how its errors fall, and the fineness that follows from them.
 module accuracy_runs
-  use accuracy_laws, only: choose_fineness, measure_laws, steps_differ
+  use accuracy_laws, only: measure_laws
   use accuracy_pilots, only: add_pilot, run_i
   use accuracy_plan, only: accuracy_plan_t, expect
   use accuracy_rules, only: coarsest_mesh, fineness_t
   use accuracy_samples, only: join_forces, range_of
   use errors, only: error_t, exit_done, exit_no_convergence, fail
+  use fineness_choice, only: choose_fineness
   use kinds, only: wp
+  use pilot_differences, only: steps_differ
   use probes, only: is_elsewhere
   use remesher_options, only: has_contours
   use run_options, only: run_options_t

@@ -1,7 +1,7 @@
 !> What a run of a deck with ACCURACY leaves for the choice of another one: its fineness and cost in `NAME.cost`, and its history.
 module accuracy_samples
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use accuracy_laws, only: sample_t
+  use accuracy_costs, only: seconds_by_task
   use accuracy_rules, only: fineness_t
   use cost_file, only: cost_t, ntask, read_cost, write_cost
   use csv_reader, only: read_csv
@@ -9,6 +9,7 @@ module accuracy_samples
   use errors, only: error_t, exit_input, fail
   use hash, only: sha256
   use kinds, only: wp
+  use pilot_differences, only: sample_t
   use probes, only: probe_maximum, probe_minimum
   use run_options, only: run_options_t, stem_of
   use run_version, only: version_text
@@ -56,15 +57,9 @@ contains
     type(cost_t) :: before
     logical :: there
     real(wp) :: seconds(ntask)
-    integer :: t, g, n
+    integer :: g
 
-    seconds = 0
-    do t = 1, equations%timers%size()
-      n = 1
-      if (equations%timers%name(t) == 'contact') n = 2
-      if (equations%timers%name(t) == 'factorisation') n = 3
-      seconds(n) = seconds(n) + equations%timers%seconds(t)
-    end do
+    seconds = seconds_by_task(equations%timers)
     ! tasks are timed on the wall, of a machine that may have other work, and may lie within others
     if (sum(seconds) > processor) seconds = seconds*processor/sum(seconds)
     seconds(4) = processor - sum(seconds)

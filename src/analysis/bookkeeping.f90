@@ -2,7 +2,7 @@
 module bookkeeping
   use contact_contour, only: sample_depth
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: at_penetration, at_status, side_length
+  use contact_state, only: at_penetration, at_status
   use dies, only: is_deformable, present_die
   use elem_api, only: add_totals, totals_t
   use element_loop, only: group_geometry
@@ -15,6 +15,7 @@ module bookkeeping
   use own_contact, only: faces_itself
   use plane_vectors, only: cross
   use scene, only: group_t, role_contact, scene_t
+  use side_points, only: side_length
   use solution, only: present_coordinates, solution_t
   use spurious_mode, only: find_spurious_mode, has_spurious_mode
   use text, only: to_text

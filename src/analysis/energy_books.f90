@@ -13,6 +13,7 @@ module energy_books
   use elem_body_springs, only: springs_of_body
   use elem_api, only: totals_t
   use element_loop, only: group_geometry
+  use energy_round_off, only: operations, stiffest
   use equations, only: equations_t
   use fields, only: displacement_field, field_t, on_nodes, on_pilots, pilot_field, section_field
   use gap_work, only: work_across_gaps
@@ -23,19 +24,7 @@ module energy_books
   use work_books, only: work_t
   implicit none
   private
-  public :: book_stored, book_work, damped_share, damping_advice, energy_imbalance, energy_of_round_off, &
-            energy_without_strain, external_on_unknowns, imbalance_advice, is_drag_alone, missing_energy, &
-            spring_energy, start_stored
-
-  !> The run warns above this share of what passed.
-  real(wp), parameter :: largest_imbalance = 0.01_wp
-  !> And where viscous forces took more than this share of it.
-  real(wp), parameter :: largest_damping = 0.01_wp
-  !> Drag that took more than this share of it resisted alone.
-  real(wp), parameter :: of_drag = 0.1_wp
-  !> Stresses carry some eps of the modulus as round-off, from strains that come from gradients of order one; on the motion of a
-  !> step they make work. As many operations as this stand behind a stress and a sum.
-  real(wp), parameter :: operations = 1000
+  public :: book_stored, book_work, external_on_unknowns, spring_energy, start_stored
 
 contains
 
@@ -198,61 +187,6 @@ contains
     end associate
   end subroutine start_stored
 
-  !> What came in and is neither stored nor dissipated, per radian when axisymmetric [energy].
-  pure function missing_energy(solution) result(missing)
-    type(solution_t), intent(in) :: solution
-    real(wp) :: missing
-
-    associate (work => solution%work)
-      missing = solution%external_work + work%heat + work%overlap + work%remeshing &
-                - work%elastic - work%flow - solution%friction_work - work%contact - work%damping - work%drag
-    end associate
-  end function missing_energy
-
-  !> The same over all that passed. A run through which less passed than round-off amounts to has none.
-  pure function energy_imbalance(solution) result(share)
-    type(solution_t), intent(in) :: solution
-    real(wp) :: share
-
-    share = 0
-    associate (passed => max(solution%work%passed, solution%work%round_off))
-      if (passed > 0) share = missing_energy(solution)/passed
-    end associate
-  end function energy_imbalance
-
-  !> What to do about an imbalance above the bound; empty where there is none.
-  pure function imbalance_advice(solution) result(advice)
-    type(solution_t), intent(in) :: solution
-    character(len=:), allocatable :: advice
-
-    advice = ''
-    if (abs(energy_imbalance(solution)) > largest_imbalance) &
-      advice = 'motion and forces are not straight within a step: take smaller steps (STRAT) and compare, half the step halves it'
-    ! without inertia there is no kinetic energy that it could become
-    if (energy_imbalance(solution) > largest_imbalance) &
-      advice = advice//'; what stays was released suddenly, as by a part that snaps free: it would be kinetic energy'
-  end function imbalance_advice
-
-  !> What viscous forces of damped steps took, over all that passed.
-  pure function damped_share(solution) result(share)
-    type(solution_t), intent(in) :: solution
-    real(wp) :: share
-
-    share = 0
-    if (solution%work%damping > 0) share = solution%work%damping/max(solution%work%passed, solution%work%damping)
-  end function damped_share
-
-  !> What to say of it; empty where there is nothing.
-  pure function damping_advice(solution) result(advice)
-    type(solution_t), intent(in) :: solution
-    character(len=:), allocatable :: advice
-
-    advice = ''
-    if (damped_share(solution) > largest_damping) &
-      advice = 'what a die held was let go suddenly, and where it came to rest depends on the way there: compare with ' &
-               //'smaller steps (STRAT), or let the die withdraw at once'
-  end function damping_advice
-
   !> Energy that springs of dies and of bodies hold [energy]. They stand outside: what dies do to the part is the work of dies, what
   !> springs of a body do that of loads.
   pure function spring_energy(scene, solution) result(energy)
@@ -277,54 +211,5 @@ contains
       end associate
     end do
   end function spring_energy
-
-  !> Energy below which stresses are round-off: what the motion of the steps may have left of it, and strains of that size.
-  pure function energy_of_round_off(scene, equations, solution, volume) result(energy)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
-    type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: volume   !! of the bodies, per radian when axisymmetric [volume]
-    real(wp) :: energy               !! per radian when axisymmetric [energy]
-
-    energy = solution%work%round_off + energy_without_strain(scene, equations, volume)
-  end function energy_of_round_off
-
-  !> Bodies were pushed about against their drag, and hardly strained: it took more than a tenth of all that passed.
-  elemental function is_drag_alone(work) result(yes)
-    type(work_t), intent(in) :: work
-    logical :: yes
-
-    yes = work%drag > of_drag*work%passed
-  end function is_drag_alone
-
-  !> What round-off of strains may be worth in bodies that have none.
-  pure function energy_without_strain(scene, equations, volume, strain) result(energy)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: volume   !! of the bodies, per radian when axisymmetric [volume]
-    real(wp), intent(in), optional :: strain   !! that counts as none, where it is not that of round-off [-]
-    real(wp) :: energy               !! per radian when axisymmetric [energy]
-
-    energy = stiffest(scene, equations)*volume*(operations*eps)**2
-    if (present(strain)) energy = stiffest(scene, equations)*volume*strain**2
-  end function energy_without_strain
-
-  !> Largest Young's modulus of the scene's materials at no temperature: the size of a stress.
-  pure function stiffest(scene, equations) result(modulus)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
-    real(wp) :: modulus
-    real(wp) :: young, poisson
-    integer :: m
-
-    modulus = 0
-    do m = 1, size(scene%materials)
-      associate (law => equations%laws(scene%materials(m)%law_id))
-        if (.not. associated(law%elastic)) cycle
-        call law%elastic(scene%materials(m), 0.0_wp, young, poisson)
-        modulus = max(modulus, young)
-      end associate
-    end do
-  end function stiffest
 
 end module energy_books

@@ -5,7 +5,8 @@
 module floating_bodies
   use contact_outlook, only: gaps_at_rest
   use dies, only: is_deformable
-  use energy_books, only: energy_without_strain, is_drag_alone
+  use energy_balance, only: is_drag_alone
+  use energy_round_off, only: energy_without_strain
   use equations, only: equations_t
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp

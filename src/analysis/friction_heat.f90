@@ -2,13 +2,13 @@
 !> in the next one. Until then it is kept at the points of heat through contact, per area, so that none is lost over a checkpoint or
 !> a new mesh.
 module friction_heat
-  use contact_point, only: area_at
   use contact_work, only: friction_energy
   use elem_heat_contact, only: name_of_due
   use fields, only: displacement_field, section_field
   use kinds, only: wp
   use quadrature, only: line_rule
   use scene, only: group_t, role_heat_contact, scene_t
+  use side_points, only: area_at
   use solution, only: solution_t
   use state_variables, only: find_variable
   use strategy, only: coupling_once

@@ -7,7 +7,8 @@
 module gap_work
   use axis_contact, only: area_at_corner, share_at_corner
   use contact_areas, only: area_of_point
-  use contact_point, only: at_between, at_piece, at_pressure, at_status, at_tau, at_xi, contact_block, penalties, side_length
+  use contact_point, only: penalties
+  use contact_state, only: at_between, at_piece, at_pressure, at_status, at_tau, at_xi, contact_block
   use contact_work, only: kept_work
   use control_point_contact, only: control_shares
   use corner_weights, only: corner_length
@@ -23,6 +24,7 @@ module gap_work
   use quadrature, only: is_control_point, line_rule
   use scene, only: group_t, role_contact, scene_t
   use shape_functions, only: line3
+  use side_points, only: side_length
   use solution, only: solution_t
   use state_variables, only: find_variable
   use vectors, only: length_of

@@ -4,7 +4,8 @@
 !>
 !> Plastic work done before a law with QUINNEY came has made no heat, and makes none later.
 module heat_handed_over
-  use driver_sources, only: find_bodies_behind, find_drivers
+  use bodies_behind, only: find_bodies_behind
+  use driver_sources, only: find_drivers
   use driver_values, only: start_drivers
   use drivers, only: at_body_effusivity, at_die_effusivity, at_die_piece, drivers_t
   use elem_heat_contact, only: name_of_due

@@ -8,7 +8,7 @@ module march_start
   use energy_books, only: start_stored
   use equation_set_up, only: set_up
   use errors, only: error_t, exit_no_convergence, fail
-  use estimator, only: set_up_estimator
+  use estimator_parts, only: set_up_estimator
   use fields, only: displacement_field
   use history, only: open_history
   use judge_remesh, only: limit_lines, refuse_remesh

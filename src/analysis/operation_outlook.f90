@@ -1,9 +1,9 @@
 !> How the part stands to the dies of a later operation as that begins: only the run knows its form then, the deck does not.
 module operation_outlook
+  use contact_check, only: largest_overlap, words_of
   use contact_outlook, only: look_at_contact, outlook_t
   use dies, only: is_deformable
   use fields, only: displacement_field, pilot_field
-  use physics_check, only: largest_overlap, words_of
   use scene, only: scene_t
   use solution, only: present_coordinates, solution_t
   use text, only: add => add_text, string_t, to_text

@@ -2,7 +2,6 @@
 !> heat in the next one. Until then friction keeps it at its points (`friction_due`), plastic work as the difference of what was
 !> done and what has become heat (`work_heated`), and what an operation has left to the next one is kept in its bodies (`heat_due`).
 module pending_heat
-  use contact_point, only: area_at
   use drivers, only: drivers_t
   use elem_heat_contact, only: name_of_due
   use fields, only: find_field, section_field
@@ -14,6 +13,7 @@ module pending_heat
   use quadrature, only: line_rule
   use scene, only: plane_stress, role_heat_contact, scene_t
   use sections, only: thickness_at
+  use side_points, only: area_at
   use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable, name_of_heat_due, name_of_ratio
   implicit none

@@ -3,9 +3,9 @@ module restart_report
   use errors, only: error_t
   use history, only: circumference
   use dies, only: is_deformable
-  use judge_remesh, only: carried_change, energy_change, energy_limit, force_alone, force_along, force_change, force_limit, &
-                          residual_limit
   use json_writer, only: json_t
+  use judge_remesh, only: force_alone
+  use remesh_limits, only: carried_change, energy_change, energy_limit, force_along, force_change, force_limit, residual_limit
   use residual_place, only: bad_shape
   use restore_balance, only: balance_t
   use scene, only: scene_t

@@ -13,7 +13,8 @@ module restore_balance
   use contact_penalties, only: allowed_penetration
   use dies, only: is_deformable
   use elem_api, only: block_done, mode_advance, mode_restore, report_t, totals_t
-  use energy_books, only: energy_of_round_off, external_on_unknowns
+  use energy_books, only: external_on_unknowns
+  use energy_round_off, only: energy_of_round_off
   use equations, only: equations_t, take_turn
   use evaluation, only: evaluate
   use external_loads, only: external_forces

@@ -1,11 +1,10 @@
 !> What a run ends with, whatever has happened: warnings, what it has cost and reached, summary and listing.
 module run_ending
-  use accuracy_laws, only: sample_t
   use accuracy_plan, only: accuracy_lines, accuracy_warning, judge_run
   use accuracy_rules, only: fineness_t
   use accuracy_samples, only: add_cost, read_sample
   use blas, only: blas_build, blas_core_name
-  use closing_table, only: close_cycle, close_run
+  use closing_facts, only: close_cycle, close_run
   use confinement, only: warn_of_confinement
   use cost_file, only: cost_t
   use crossed_bodies, only: warn_of_crossed_bodies
@@ -19,6 +18,7 @@ module run_ending
   use listing, only: close_listing, end_progress, list_lines
   use narrow_loads, only: narrow_words
   use passed_planes, only: warn_of_passed_planes
+  use pilot_differences, only: sample_t
   use run_facts, only: run_facts_t
   use run_options, only: run_options_t
   use run_record, only: run_t

@@ -1,6 +1,6 @@
 !> What is known of a run when it ends, beside its state: for its summary.
 module run_facts
-  use closing_table, only: closing_t
+  use closing_facts, only: closing_t
   use elem_api, only: totals_t
   use kinds, only: wp
   use solution, only: solution_t

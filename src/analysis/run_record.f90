@@ -8,7 +8,7 @@ module run_record
   use elem_api, only: totals_t
   use equations, only: equations_t
   use errors, only: error_t, exit_done
-  use estimator, only: estimator_t
+  use estimator_parts, only: estimator_t
   use exchange, only: write_checkpoint
   use fields, only: pilot_field
   use history, only: write_row

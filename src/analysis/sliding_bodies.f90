@@ -6,7 +6,7 @@
 !> pressure where points slip, there or in the last attempt. A part that dies upset slips both ways, one in a fillet touches along
 !> several lines: these do not slide away.
 module sliding_bodies
-  use contact_point, only: at_pressure, at_status, at_tau
+  use contact_state, only: at_pressure, at_status, at_tau
   use dies, only: is_deformable
   use fields, only: displacement_field
   use kinds, only: wp

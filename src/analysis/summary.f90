@@ -3,7 +3,8 @@ module summary
   use closing_table, only: add_closing
   use cut_report, only: add_cuts
   use elem_api, only: totals_t
-  use energy_books, only: missing_energy, spring_energy
+  use energy_balance, only: missing_energy
+  use energy_books, only: spring_energy
   use equations, only: equations_t
   use errors, only: error_t
   use hash, only: sha256

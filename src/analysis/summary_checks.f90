@@ -2,7 +2,7 @@
 module summary_checks
   use accept_step, only: dissipation_slack
   use elem_api, only: totals_t
-  use energy_books, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
+  use energy_balance, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
   use fields, only: displacement_field
   use heat_books, only: has_heat, heat_imbalance
   use heat_record, only: heat_record_t

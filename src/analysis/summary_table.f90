@@ -3,7 +3,7 @@ module summary_table
   use closing_table, only: closing_lines
   use cut_report, only: lines_of_cuts
   use elem_api, only: totals_t
-  use energy_books, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
+  use energy_balance, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
   use equations, only: equations_t
   use heat_books, only: has_heat, heat_imbalance
   use history, only: circumference

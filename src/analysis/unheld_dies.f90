@@ -1,7 +1,7 @@
 !> Free dies that nothing holds, or that go on without end under their force: why a run cannot go on.
 module unheld_dies
   use contact_changes, only: touching_dies
-  use contact_point, only: at_pressure, is_in_contact
+  use contact_state, only: at_pressure, is_in_contact
   use equations, only: equations_t
   use fields, only: pilot_field
   use history, only: circumference

@@ -1,6 +1,7 @@
 !> Supervision of the mesh: its errors after every step, and whether a new one is due (cards ESTIM, REMSH).
 module watch_mesh
-  use estimator, only: estimate_errors, estimator_t
+  use estimator, only: estimate_errors
+  use estimator_parts, only: estimator_t
   use fields, only: displacement_field
   use listing, only: list_lines, listing_t
   use narrow_contacts, only: measure_narrow, narrow_t

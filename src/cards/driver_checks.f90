@@ -1,7 +1,7 @@
 !> What drives the laws of a scene must be there.
 module driver_checks
   use diagnostics, only: diagnostics_t
-  use driver_sources, only: driver_of_others, missing_driver
+  use driver_lookup, only: driver_of_others, missing_driver
   use element_fields, only: acts_on
   use law_api, only: find_parameter, heat_law
   use materials, only: has_number

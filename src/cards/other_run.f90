@@ -6,7 +6,6 @@
 module other_run
   use box_tree, only: box_tree_t, build_tree
   use deck_cursor, only: cursor_t
-  use deck_source, only: path_beside
   use elem_api, only: elem_t
   use element_fields, only: list_body_elems
   use errors, only: error_t
@@ -15,6 +14,7 @@ module other_run
   use run_temperatures, only: elements_of_body, read_run_temperatures, run_temperatures_t
   use scene_draft, only: draft_t, words_of
   use shape_functions, only: quad8
+  use system, only: path_beside
   use text, only: string_t, to_text
   implicit none
   private

@@ -2,7 +2,6 @@
 module steel_files
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_field_t, deck_t, fingerprint_text, read_deck
-  use deck_source, only: path_beside
   use diagnostics, only: diagnostics_t
   use elem_api, only: elem_t
   use elem_registry, only: list_elems
@@ -12,6 +11,7 @@ module steel_files
   use run_temperatures, only: read_run_temperatures, run_temperatures_t, temperatures_digest
   use steel_reader, only: read_steels
   use steels, only: steel_t
+  use system, only: path_beside
   use text, only: string_t, upper_case
   implicit none
   private

@@ -1,8 +1,8 @@
 !> What each line of a deck is: a card, a data row, a PARAM line, or nothing that can be taken.
 module deck_lines
   use deck_field, only: first_word, keyword_letters
-  use deck_source, only: source_t
   use diagnostics, only: diagnostics_t, location_t
+  use source_lines, only: source_t
   use text, only: string_t, to_text, upper_case
   implicit none
   private

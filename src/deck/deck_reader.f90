@@ -6,8 +6,10 @@ module deck_reader
   use deck_field, only: deck_field_t, first_word, is_title, scan_fields
   use deck_lines, only: classify, declared_names, is_card, is_param, is_row
   use deck_parameters, only: parameters_t
-  use deck_source, only: load_file, load_text, source_t, write_text
+  use deck_source, only: load_file
   use diagnostics, only: diagnostics_t, location_t
+  use source_lines, only: source_t
+  use stored_deck, only: load_text, write_text
   use text, only: string_t, to_text, upper_case
   implicit none
   private

@@ -16,9 +16,9 @@
 !> Its place is exactly -1 or 1.
 module axis_contact
   use closest_point, only: closest_point_t
+  use contact_overlap, only: share_to_contact
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: area_at, at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_xi, contact_block, &
-                           contact_point_t, no_surface, rest, share_to_contact
+  use contact_state, only: at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_xi, contact_block, rest
   use corner_contact, only: end_on_axis, press_corner
   use corner_weights, only: area_of_disc, share_of_corner
   use dies, only: die_t
@@ -29,6 +29,7 @@ module axis_contact
   use plane_vectors, only: turned
   use rigid_contact, only: closest_or_followed, is_kept, ndof, place_point, press, side_t
   use sections, only: thickness_at
+  use side_points, only: area_at, contact_point_t, no_surface
   implicit none
   private
   public :: press_axis, area_at_corner, depth_of_bearing, share_at_corner

@@ -3,9 +3,9 @@
 !> The weights of an integration rule; with a control point (control_point_contact) the integrals of the Bernstein polynomials by
 !> Simpson's rule: (a_1 + a_m)/3, 2 a_m/3, (a_2 + a_m)/3 with the areas a per unit of xi at the nodes.
 module contact_areas
-  use contact_point, only: area_at
   use kinds, only: wp
   use quadrature, only: rule_control, rule_t
+  use side_points, only: area_at
   implicit none
   private
   public :: area_of_point, areas_with_control

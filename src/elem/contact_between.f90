@@ -22,9 +22,8 @@ module contact_between
   use closest_point, only: closest_point_t
   use contact_areas, only: area_of_point
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: area_at, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau, at_work, contact_block, &
-                           contact_point_t, no_surface, touching
   use contact_scan, only: closest_to_side_point
+  use contact_state, only: at_between, at_energy, at_penetration, at_pressure, at_status, at_tau, at_work, contact_block
   use corner_contact, only: end_on_axis
   use dies, only: die_t
   use elem_api, only: report_t
@@ -33,6 +32,7 @@ module contact_between
   use materials, only: material_t
   use quadrature, only: rule_t
   use rigid_contact, only: motion_of_depth, ndof, nodes_in_axes, place_point, press, side_t
+  use side_points, only: area_at, contact_point_t, no_surface, touching
   use start_depths, only: find_depth_at_start
   implicit none
   private

@@ -1,12 +1,12 @@
 !> Conductances of the points of heat through contact, as the mechanics has left them, to be handed over from one turn of the solves
 !> to the next (exchange_in_turns).
 module contact_conductance
-  use contact_point, only: side_length
   use drivers, only: at_die_piece, at_status, drivers_t, hand_over_conductance, heat_contact_drivers
   use heat_contact_point, only: conductance_by_contact
   use heat_contacts, only: largest_conductance
   use kinds, only: wp
   use scene, only: scene_t
+  use side_points, only: side_length
   use solution, only: solution_t
   implicit none
   private

@@ -6,8 +6,9 @@ module contact_measure
   use axis_contact, only: area_at_corner, share_at_corner
   use contact_areas, only: area_of_point
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
-  use contact_point, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, at_xi, &
-                           contact_block, dissipated, is_released, penalties, side_length
+  use contact_point, only: dissipated, penalties
+  use contact_state, only: at_augmentation, at_between, at_penetration, at_piece, at_pressure, at_status, at_work, at_xi, &
+                           contact_block, is_released
   use contact_work, only: kept_work
   use corner_states, only: corner_before
   use corner_weights, only: corner_length
@@ -17,6 +18,7 @@ module contact_measure
   use law_api, only: contact_open, contact_slip, contact_stick, law_t
   use quadrature, only: is_control_point, line_rule, rule_equidistant, rule_t
   use scene, only: group_t, scene_t
+  use side_points, only: side_length
   use state_variables, only: find_variable
   implicit none
   private

@@ -1,7 +1,8 @@
 !> A whole side of the part against its die: its depth at many points, and where contact begins and ends on it.
 module contact_scan
   use closest_point, only: closest_point_t
-  use curve_search, only: box_distance, closest_facing_point
+  use curve_boxes, only: box_distance
+  use curve_search, only: closest_facing_point
   use dies, only: die_t
   use kinds, only: wp
   use plane_vectors, only: left_of

@@ -12,12 +12,13 @@
 !> methods).
 module contact_work
   use contact_areas, only: area_of_point
-  use contact_point, only: area_at, at_augmentation, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau, &
-                           at_xi, is_released
+  use contact_state, only: at_augmentation, at_between, at_energy, at_penetration, at_pressure, at_status, at_tau, at_xi, &
+                           is_released
   use corner_weights, only: corner_length
   use kinds, only: wp
   use law_api, only: contact_open
   use quadrature, only: rule_t
+  use side_points, only: area_at
   implicit none
   private
   public :: friction_energy, kept_work

@@ -28,12 +28,14 @@
 !> nothing where the middle node is half way along the tangent t and both ends depart alike. The areas are those of contact_areas.
 module control_point_contact
   use closest_point, only: closest_point_t
-  use contact_point, only: answer, at_penetration, at_piece, at_xi, contact_point_t, meeting_t, most_unknowns
+  use contact_point, only: answer, meeting_t
+  use contact_state, only: at_penetration, at_piece, at_xi
   use kinds, only: wp
   use law_api, only: law_t
   use materials, only: material_t
   use rigid_contact, only: drift_t, meet, ndof, side_t
   use shape_functions, only: line3
+  use side_points, only: contact_point_t, most_unknowns
   use vectors, only: length_of
   implicit none
   private

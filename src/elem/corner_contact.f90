@@ -16,9 +16,10 @@
 !> changes there. The point itself stays open as it passes, where it was (corner_beside): were it pressed in place of the corner,
 !> it would be held on the face beyond the corner until its pressure is released, and the part would stop and jump.
 module corner_contact
-  use contact_point, only: area_at, at_between, at_energy, at_penetration, at_piece, at_pressure, at_status, at_tau, at_work, &
-                           at_xi, contact_block, contact_point_t, most_unknowns, no_surface, share_to_contact, thinning
+  use contact_overlap, only: share_to_contact
   use contact_penalties, only: allowed_penetration
+  use contact_state, only: at_between, at_energy, at_penetration, at_piece, at_pressure, at_status, at_tau, at_work, at_xi, &
+                           contact_block
   use corner_states, only: bears, corner_at_start, free_depth, keep_corner
   use corner_weights, only: handing_over, interval_before, share_of_corner
   use dies, only: die_t
@@ -30,6 +31,7 @@ module corner_contact
   use rigid_contact, only: drift_t, ndof, nodes_in_axes, outer, place_point, press, side_t
   use shape_functions, only: line3
   use side_corners, only: closest_at_corner, corner_t, corner_within, deepest_corner
+  use side_points, only: area_at, contact_point_t, most_unknowns, no_surface, thinning
   implicit none
   private
   public :: corner_beside, end_on_axis, press_corner, press_corners

@@ -5,13 +5,14 @@
 !> its corner, as the line along its tangent, for `releasing` of half a side, and the pressure falls to zero on that way.
 module corner_release
   use closest_point, only: closest_point_t, closest_within_piece, past_end
-  use contact_point, only: at_penetration, at_piece, at_status, at_xi, contact_point_t
+  use contact_state, only: at_penetration, at_piece, at_status, at_xi
   use dies, only: die_t
   use kinds, only: wp
   use law_api, only: contact_open
   use piecewise_curves, only: adjacent_piece, blunt
   use plane_vectors, only: cross, right_of, turned
   use rigid_contact, only: ndof, side_t
+  use side_points, only: contact_point_t
   implicit none
   private
   public :: release_t, slide_past_corner, slide_beyond, motion_past_corner, passes_corner

@@ -4,7 +4,7 @@
 !> deepest. Others in the same interval have none.
 module corner_states
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: at_augmentation, at_between, at_energy, at_penetration, at_piece, at_pressure, at_status, at_tau, &
+  use contact_state, only: at_augmentation, at_between, at_energy, at_penetration, at_piece, at_pressure, at_status, at_tau, &
                            at_xi, contact_block
   use corner_weights, only: share_of_corner
   use dies, only: die_t

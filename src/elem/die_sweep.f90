@@ -3,12 +3,12 @@
 !>
 !> Paths of places along the side are straight in the axes of the die.
 module die_sweep
-  use contact_point, only: contact_point_t
   use dies, only: die_t
   use kinds, only: wp
   use path_crossings, only: share_before_passing
   use plane_vectors, only: turned
   use rigid_contact, only: place_point, side_t
+  use side_points, only: contact_point_t
   use vectors, only: length_of
   implicit none
   private

@@ -1,21 +1,21 @@
 !> Where the drivers of the points of each group come from: fields, states of other formulations, stress, the body behind.
 module driver_sources
+  use bodies_behind, only: find_bodies_behind
+  use driver_lookup, only: is_asked_for, is_stressed, source_of
   use drivers, only: at_body_effusivity, at_corner_place, at_die_effusivity, at_handed, at_status, driver_source_t, drivers_t, &
-                     flow_name, from_effusivity, from_field, from_flow, from_itself, from_nothing, from_state, from_stress, &
-                     from_stretch, from_unloading, heat_contact_drivers, is_scalar, not_handed, of_contact, planes_of_heat
-  use fields, only: find_field
-  use kinds, only: wp
+                     from_effusivity, from_field, from_nothing, from_state, from_stress, from_stretch, from_unloading, &
+                     heat_contact_drivers, not_handed, of_contact, planes_of_heat
   use heat_sources, only: work_name
-  use law_api, only: driver_count, driver_t, driver_temperature, heat_law, law_t, solid_law
-  use materials, only: has_number
+  use kinds, only: wp
+  use law_api, only: driver_count, driver_temperature, heat_law, law_t
   use point_temperatures, only: temperature_field
   use scene, only: host_of, is_solid, plane_stress, role_contact, role_heat_contact, role_volume_load, scene_t
   use state_variables, only: find_variable
   use strategy, only: coupling_monolithic
-  use stress_measures, only: measure_names, nmeasure
+  use stress_measures, only: nmeasure
   implicit none
   private
-  public :: find_bodies_behind, find_drivers, missing_driver, driver_of_others
+  public :: find_drivers
 
 contains
 
@@ -211,177 +211,5 @@ contains
       drivers%source([at_body_effusivity, at_die_effusivity])%kind = from_effusivity
     end associate
   end subroutine drive_heat_contact
-
-  !> The first driver that the law of a group needs and nothing in the scene gives, '' where there is none.
-  pure function missing_driver(scene, laws, g) result(name)
-    type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)   !! (nlaw)
-    integer, intent(in) :: g             !! number of the group
-    character(len=:), allocatable :: name
-    type(driver_source_t) :: source
-    integer :: k
-
-    name = ''
-    if (scene%groups(g)%material == 0) return
-    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
-      do k = 1, driver_count(law) - 1
-        if (.not. is_asked_for(scene, g, law%drivers(k))) cycle
-        source = source_of(scene, g, law%drivers(k)%name)
-        if (source%kind /= from_nothing) cycle
-        name = law%drivers(k)%name
-        return
-      end do
-    end associate
-  end function missing_driver
-
-  !> The first driver of a law for solids that is a state of another formulation whose law is driven by the stress or a state of
-  !> this one, '' where there is none.
-  pure function driver_of_others(scene, laws, g) result(name)
-    type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)   !! (nlaw)
-    integer, intent(in) :: g             !! number of the group
-    character(len=:), allocatable :: name
-    type(driver_source_t) :: source
-    integer :: k
-
-    name = ''
-    if (scene%groups(g)%material == 0) return
-    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
-      if (law%kind /= solid_law) return
-      do k = 1, driver_count(law) - 1
-        source = source_of(scene, g, law%drivers(k)%name)
-        if (source%kind /= from_state) cycle
-        if (.not. is_driven_by(scene, laws, source%group(host_of(scene, g)), g)) cycle
-        name = law%drivers(k)%name
-        return
-      end do
-    end associate
-  end function driver_of_others
-
-  !> The law of a group is driven by the stress or a state of a body.
-  pure function is_driven_by(scene, laws, g, body) result(yes)
-    type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
-    integer, intent(in) :: g      !! number of the group
-    integer, intent(in) :: body   !! that of the body
-    logical :: yes
-    type(driver_source_t) :: source
-    integer :: k
-
-    yes = is_stressed(scene, laws, g)
-    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
-      do k = 1, driver_count(law) - 1
-        if (.not. is_asked_for(scene, g, law%drivers(k))) cycle
-        source = source_of(scene, g, law%drivers(k)%name)
-        if (source%kind == from_state) yes = yes .or. source%group(body) == body
-      end do
-    end associate
-  end function is_driven_by
-
-  !> The law of a group is driven by stress.
-  pure function is_stressed(scene, laws, g) result(yes)
-    type(scene_t), intent(in) :: scene
-    type(law_t), intent(in) :: laws(:)
-    integer, intent(in) :: g
-    logical :: yes
-    integer :: k
-
-    yes = .false.
-    associate (law => laws(scene%materials(scene%groups(g)%material)%law_id))
-      do k = 1, driver_count(law) - 1
-        if (is_asked_for(scene, g, law%drivers(k))) yes = yes .or. place_of_measure(law%drivers(k)%name) > 0
-      end do
-    end associate
-  end function is_stressed
-
-  !> The material of a group has the number for which its law needs a driver.
-  pure function is_asked_for(scene, g, driver) result(yes)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g   !! place of the group
-    type(driver_t), intent(in) :: driver
-    logical :: yes
-
-    yes = driver%needs == 0
-    if (.not. yes) yes = has_number(scene%materials(scene%groups(g)%material), driver%needs)
-  end function is_asked_for
-
-  !> Bodies behind sides, by the nodes in the middle of these: group, element, and its side 1 to 4.
-  pure subroutine find_bodies_behind(scene, middles, body, element, side)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: middles(:)                                  !! (nside)
-    integer, allocatable, intent(out) :: body(:), element(:), side(:)  !! (nside)
-    integer :: owner(3, size(scene%mesh%coordinates, 2)), g, e, k
-
-    owner = 0
-    do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g))) cycle
-      do e = 1, size(scene%groups(g)%connectivity, 2)
-        do k = 1, 4
-          owner(:, scene%groups(g)%connectivity(4 + k, e)) = [g, e, k]
-        end do
-      end do
-    end do
-    body = owner(1, middles)
-    element = owner(2, middles)
-    side = owner(3, middles)
-  end subroutine find_bodies_behind
-
-  !> Source of a name for a group.
-  pure function source_of(scene, g, name) result(source)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g   !! number of the group
-    character(len=*), intent(in) :: name
-    type(driver_source_t) :: source
-    integer :: k, v, f
-
-    if (scene%groups(g)%role == role_contact .and. name == flow_name) then
-      source%kind = from_flow
-      return
-    end if
-    f = find_field(scene%fields, name)
-    if (f > 0) then
-      if (is_scalar(scene%fields(f))) then
-        source%kind = from_field
-        source%field = f
-        return
-      end if
-    end if
-    allocate (source%group(size(scene%groups)), source%row(size(scene%groups)), source=0)
-    v = find_variable(scene%groups(g)%variables, name)
-    if (v > 0 .and. scene%groups(g)%role /= role_contact) then
-      source%kind = from_itself
-      source%row(g) = scene%groups(g)%variables(v)%first
-      return
-    end if
-    source%measure = place_of_measure(name)
-    do k = 1, size(scene%groups)
-      if (k == g .or. scene%groups(k)%role == role_contact) cycle
-      if (source%measure > 0 .and. scene%groups(g)%role /= role_contact .and. host_of(scene, k) == host_of(scene, g)) then
-        v = find_variable(scene%groups(k)%variables, 'stress')
-        if (v == 0) cycle
-        source%kind = from_stress
-        source%group(host_of(scene, k)) = k
-        source%row(host_of(scene, k)) = scene%groups(k)%variables(v)%first
-        return
-      end if
-      v = find_variable(scene%groups(k)%variables, name)
-      if (v == 0) cycle
-      if (scene%groups(k)%variables(v)%ncomp > 1) cycle
-      if (scene%groups(g)%role /= role_contact .and. host_of(scene, k) /= host_of(scene, g)) cycle
-      source%kind = from_state
-      source%group(host_of(scene, k)) = k
-      source%row(host_of(scene, k)) = scene%groups(k)%variables(v)%first
-    end do
-  end function source_of
-
-  !> Place of a name among the measures of a stress, 0 where it is none.
-  pure function place_of_measure(name) result(place)
-    character(len=*), intent(in) :: name
-    integer :: place
-
-    do place = nmeasure, 1, -1
-      if (trim(measure_names(place)) == name) return
-    end do
-  end function place_of_measure
 
 end module driver_sources

@@ -12,9 +12,10 @@
 !> The slip of a step is what the material point at xi has moved relative to the edge, in axes that turn with the side, or with the
 !> face: a rigid motion of both bodies makes none.
 module edge_contact
+  use contact_overlap, only: share_to_contact
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: act, at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_block, &
-                           contact_point_t, meeting_t, most_unknowns, no_surface, share_to_contact, side_point, thinning
+  use contact_point, only: act, meeting_t
+  use contact_state, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_block
   use corner_states, only: corner_share
   use corner_weights, only: corner_length, handing_over, interval_before, share_of_corner
   use dies, only: die_t
@@ -30,6 +31,7 @@ module edge_contact
   use rigid_contact, only: side_t
   use shape_functions, only: line3
   use side_corners, only: corner_t, deepest_corner
+  use side_points, only: contact_point_t, most_unknowns, no_surface, side_point, thinning
   use vectors, only: length_of
   implicit none
   private

@@ -10,7 +10,7 @@
 !> third of that way a point loses its pressure steadily: one that ended at once would leave positions without equilibrium.
 module edge_release
   use closest_point, only: closest_point_t, past_end
-  use contact_point, only: at_piece, at_status
+  use contact_state, only: at_piece, at_status
   use corner_faces, only: closest_on_piece
   use corner_weights, only: handing_over
   use dies, only: die_t

@@ -1,7 +1,7 @@
 !> States of the edges of a deformable die on a side (edge_contact): each is in the interval between two points of the side where
 !> the edge is, and goes on from there to the next as the side slides.
 module edge_states
-  use contact_point, only: at_augmentation, at_between, at_piece, at_pressure, at_status, at_xi, contact_block
+  use contact_state, only: at_augmentation, at_between, at_piece, at_pressure, at_status, at_xi, contact_block
   use corner_weights, only: handing_over, share_of_corner
   use kinds, only: wp
   use law_api, only: contact_open

@@ -23,11 +23,10 @@ module elem_cnt2d
   use contact_areas, only: areas_with_control
   use contact_between, only: press_between
   use contact_measure, only: augment, measure
+  use contact_overlap, only: share_to_contact
+  use contact_point, only: penalties
   use contact_scan, only: is_near
-  use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, &
-                           contact_point_t, no_surface, &
-                           penalties, point_variables, rest, share_to_contact, show_on_axis, side_length, &
-                           thinning, touching
+  use contact_state, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, point_variables, rest, show_on_axis
   use corner_contact, only: corner_beside, press_corners
   use corner_release, only: motion_past_corner, passes_corner, release_t, slide_past_corner
   use die_sweep, only: share_to_pass
@@ -42,6 +41,7 @@ module elem_cnt2d
   use side_contact, only: press_side
   use rigid_contact, only: closest_or_followed, ndof, nodes_in_axes, place_point, press, side_t
   use scene, only: axisymmetric, group_t, role_contact, scene_t
+  use side_points, only: contact_point_t, no_surface, side_length, thinning, touching
   use state_variables, only: state_variable, state_variable_t, transfer_recompute
   use start_depths, only: state_at_start
   implicit none

@@ -12,10 +12,12 @@
 !> A body may face itself (own_contact, own_closest_point).
 module elem_cntdf
   use closest_point, only: closest_point_t
+  use contact_overlap, only: share_to_contact
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, most_unknowns, no_surface, &
-                           penalties, rest, share_to_contact, show_on_axis, side_length, side_point, thinning
-  use curve_search, only: box_distance, closest_facing_point
+  use contact_point, only: penalties
+  use contact_state, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, rest, show_on_axis
+  use curve_boxes, only: box_distance
+  use curve_search, only: closest_facing_point
   use dies, only: die_t
   use edge_contact, only: press_edges
   use edge_release, only: edge_release_t, slide_past_edge, slide_past_end
@@ -33,6 +35,7 @@ module elem_cntdf
   use rigid_contact, only: side_t
   use scene, only: axisymmetric, generalised_plane_strain, group_t, scene_t
   use shape_functions, only: line3
+  use side_points, only: most_unknowns, no_surface, side_length, side_point, thinning
   implicit none
   private
   public :: elem_cntdf_row

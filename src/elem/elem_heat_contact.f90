@@ -14,7 +14,6 @@
 !> facing point: along all temperatures, and along the displacements that change the area; how the rest follows the motion is added
 !> near the solution (contact_heat_tangent).
 module elem_heat_contact
-  use contact_point, only: area_at, side_length
   use contact_work, only: friction_energy
   use drivers, only: at_body_effusivity, at_corner_place, at_corner_work, at_die_effusivity, at_friction_work
   use elem_api, only: elem_t, first_unknown, instant_t, layout_t, mode_advance, mode_error, of_pilot, report_t, unknown_t
@@ -30,6 +29,7 @@ module elem_heat_contact
   use quadrature, only: line_rule
   use scene, only: group_t, role_heat_contact, scene_t
   use shape_functions, only: line3
+  use side_points, only: area_at, side_length
   use state_variables, only: find_variable
   use strategy, only: coupling_once
   implicit none

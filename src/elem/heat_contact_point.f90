@@ -1,7 +1,6 @@
 !> What a point of a side faces for heat through contact, and the unknowns that it exchanges between (elem_heat_contact).
 module heat_contact_point
   use closest_point, only: closest_point_t
-  use contact_point, only: contact_point_t, most_unknowns, side_point
   use curve_search, only: closest_facing_point
   use drivers, only: at_die_piece, at_die_xi, at_gap, at_handed, at_pressure, at_status, heat_contact_drivers, not_handed
   use elem_api, only: instant_t, layout_t
@@ -12,6 +11,7 @@ module heat_contact_point
   use plane_vectors, only: turned
   use scene, only: group_t, scene_t
   use shape_functions, only: line3
+  use side_points, only: contact_point_t, most_unknowns, side_point
   use vectors, only: length_of
   implicit none
   private

@@ -1,7 +1,7 @@
 !> The side of another body that a point of contact keeps for the length of a step.
 module kept_side
   use closest_point, only: closest_point_t
-  use contact_point, only: at_piece, at_status, contact_point_t
+  use contact_state, only: at_piece, at_status
   use corner_faces, only: closest_on_piece
   use dies, only: die_t, edge_turn
   use kinds, only: wp
@@ -9,6 +9,7 @@ module kept_side
   use pairs, only: pieces_in_reach, place_in_reach
   use piecewise_curves, only: adjacent_piece
   use plane_vectors, only: cross
+  use side_points, only: contact_point_t
   implicit none
   private
   public :: beyond_all, handed_over_t, keep_closest_point

@@ -13,7 +13,8 @@
 !> sides the axes turn with the end of the first.
 module met_side
   use closest_point, only: closest_point_t
-  use contact_point, only: act, at_status, contact_point_t, meeting_t, most_unknowns
+  use contact_point, only: act, meeting_t
+  use contact_state, only: at_status
   use edge_release, only: edge_release_t
   use kinds, only: eps, wp
   use law_api, only: contact_open, law_t
@@ -23,6 +24,7 @@ module met_side
   use plane_vectors, only: cross
   use rigid_contact, only: side_t
   use shape_functions, only: line3
+  use side_points, only: contact_point_t, most_unknowns
   use vectors, only: length_of
   implicit none
   private

@@ -6,7 +6,7 @@
 !> fold press on each other; beside any other corner a depth is the body itself.
 module own_closest_point
   use closest_point, only: closest_point_t
-  use contact_point, only: at_piece, at_xi, contact_point_t, touching
+  use contact_state, only: at_piece, at_xi
   use corner_faces, only: closest_on_piece
   use curve_search, only: closest_opposed_point, follow_closest_point, looks_at
   use dies, only: die_t
@@ -16,6 +16,7 @@ module own_closest_point
   use piecewise_curves, only: adjacent_piece
   use plane_vectors, only: cross, right_of
   use scene, only: group_t, scene_t
+  use side_points, only: contact_point_t, touching
   use vectors, only: length_of
   implicit none
   private

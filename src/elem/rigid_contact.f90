@@ -6,8 +6,9 @@
 !>
 !> A point may be one that moves along its side as that moves, as that of a corner of the die does: drift_t.
 module rigid_contact
-  use contact_point, only: act, at_penetration, at_piece, at_status, at_xi, contact_point_t, meeting_t, most_unknowns, side_point
   use closest_point, only: closest_point_t
+  use contact_point, only: act, meeting_t
+  use contact_state, only: at_penetration, at_piece, at_status, at_xi
   use corner_faces, only: stay_on_face
   use curve_search, only: closest_facing_point, follow_closest_point
   use dies, only: die_t
@@ -16,6 +17,7 @@ module rigid_contact
   use materials, only: material_t
   use plane_vectors, only: turned
   use shape_functions, only: line3
+  use side_points, only: contact_point_t, most_unknowns, side_point
   implicit none
   private
   public :: side_t, drift_t, place_point, press, meet, outer, closest_or_followed, motion_of_depth, nodes_in_axes, side_at_start

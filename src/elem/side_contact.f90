@@ -7,7 +7,7 @@
 !> the pressure begins as it was carried there, however the side lies.
 module side_contact
   use closest_point, only: closest_point_t
-  use contact_point, only: at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_xi, contact_point_t, touching
+  use contact_state, only: at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_xi
   use control_point_contact, only: control_t, end_area, find_control_point, node_t, press_control_point
   use corner_release, only: motion_past_corner, passes_corner, release_t, slide_beyond, slide_past_corner
   use dies, only: die_t
@@ -17,6 +17,7 @@ module side_contact
   use materials, only: material_t
   use plane_vectors, only: left_of, turned
   use rigid_contact, only: closest_or_followed, ndof, place_point, press, side_at_start, side_t
+  use side_points, only: contact_point_t, touching
   use start_depths, only: state_at_start
   implicit none
   private

@@ -6,8 +6,8 @@
 !> tilt of the die there: enough for all of its friction, in a direction that changes sign where two pieces of the die meet.
 module start_depths
   use closest_point, only: closest_point_t
-  use contact_point, only: at_penetration, at_piece, at_status
   use contact_scan, only: closest_to_side_point
+  use contact_state, only: at_penetration, at_piece, at_status
   use dies, only: die_t
   use kinds, only: wp
   use law_api, only: contact_open

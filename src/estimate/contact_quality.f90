@@ -6,8 +6,8 @@
 !> body's contour says nothing (own_contact), and is left out as it is of `max_penetration_sampled`.
 module contact_quality
   use contact_penalties, only: allowed_penetration
-  use contact_point, only: at_penetration, at_status, contact_block
   use contact_scan, only: deepest_sample, is_near, widest_gap
+  use contact_state, only: at_penetration, at_status, contact_block
   use dies, only: die_t, in_pilot_axes, present_die
   use fields, only: pilot_field
   use kinds, only: wp

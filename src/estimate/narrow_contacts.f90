@@ -8,7 +8,7 @@
 module narrow_contacts
   use bearing_nodes, only: bears_load
   use block_mesh, only: polygon_area
-  use driver_sources, only: find_bodies_behind
+  use bodies_behind, only: find_bodies_behind
   use fields, only: displacement_field
   use kinds, only: wp
   use quadrature, only: line_rule

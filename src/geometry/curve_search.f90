@@ -19,18 +19,17 @@ module curve_search
   use closest_point, only: closest_at_vertex, closest_point_t, closest_within_piece, distance_slope, end_slack, stationary_points, &
                            whole_piece
   use corner_faces, only: keep_to_face, leave_beside
+  use curve_boxes, only: box_gap, box_of_node, start_at_root, wait_below, waiting_nodes_t
   use kinds, only: wp
-  use piecewise_curves, only: adjacent_piece, box_gap, box_of_node, piecewise_curve_t
+  use piecewise_curves, only: adjacent_piece, piecewise_curve_t
   implicit none
   private
-  public :: closest_facing_point, closest_opposed_point, closest_on_pieces, follow_closest_point, looks_at, box_distance
+  public :: closest_facing_point, closest_opposed_point, closest_on_pieces, follow_closest_point, looks_at
 
   !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
   real(wp), parameter :: facing = 0.9_wp
   !> Sides of one curve look at each other when the product of their inner normals is below this.
   real(wp), parameter :: opposed = -0.1_wp
-  !> Nodes waiting in a search are one for each row of the tree at most: pieces are counted by 32 bits.
-  integer, parameter :: most_waiting = 40
 
   !> Which closest points are sought.
   type :: search_t
@@ -153,28 +152,21 @@ contains
     class(piecewise_curve_t), intent(in) :: curve
     type(search_t), intent(inout) :: search
     logical, intent(in), optional :: may(:)   !! (npiece) pieces that are tried
-    integer :: waiting(most_waiting), n, node, near, far
-    real(wp) :: gaps(most_waiting), gap(2), slack
+    type(waiting_nodes_t) :: waiting
+    real(wp) :: slack
+    integer :: node
 
     slack = slack_of(curve, search%point)
-    n = 1
-    waiting(1) = 1
-    gaps(1) = box_gap(box_of_node(curve, 1), [search%point, search%point])
-    do while (n > 0)
-      node = waiting(n)
-      n = n - 1
-      if (gaps(n + 1) > (search%best + slack)**2) cycle
+    call start_at_root(curve, [search%point, search%point], waiting)
+    do while (waiting%n > 0)
+      node = waiting%node(waiting%n)
+      waiting%n = waiting%n - 1
+      if (waiting%gap(waiting%n + 1) > (search%best + slack)**2) cycle
       if (node > size(curve%tree, 2)) then
         call try_leaf(curve, node - size(curve%tree, 2), search, may)
-        cycle
+      else
+        call wait_below(curve, [search%point, search%point], node, waiting)
       end if
-      gap(1) = box_gap(box_of_node(curve, 2*node), [search%point, search%point])
-      gap(2) = box_gap(box_of_node(curve, 2*node + 1), [search%point, search%point])
-      near = merge(0, 1, gap(1) <= gap(2))
-      far = 1 - near
-      waiting(n + 1:n + 2) = 2*node + [far, near]
-      gaps(n + 1:n + 2) = gap([far + 1, near + 1])
-      n = n + 2
     end do
   end subroutine search_tree
 
@@ -291,36 +283,5 @@ contains
     call keep_to_face(curve, point, e_r, reach, closest)
     if (closest%d > -end_slack*reach) call leave_beside(curve, point, e_r, reach, closest)
   end subroutine follow_closest_point
-
-  !> Distance from a box (xmin, ymin, xmax, ymax) to the boxes of a curve; 0 when they meet [length].
-  pure function box_distance(curve, box) result(distance)
-    class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: box(4)   !! xmin, ymin, xmax, ymax [length]
-    real(wp) :: distance
-    real(wp) :: gaps(most_waiting), gap(2)
-    integer :: waiting(most_waiting), n, node, near, far
-
-    distance = huge(1.0_wp)
-    n = 1
-    waiting(1) = 1
-    gaps(1) = box_gap(box_of_node(curve, 1), box)
-    do while (n > 0)
-      node = waiting(n)
-      n = n - 1
-      if (.not. gaps(n + 1) < distance) cycle
-      if (node > size(curve%tree, 2)) then
-        distance = gaps(n + 1)
-        cycle
-      end if
-      gap(1) = box_gap(box_of_node(curve, 2*node), box)
-      gap(2) = box_gap(box_of_node(curve, 2*node + 1), box)
-      near = merge(0, 1, gap(1) <= gap(2))
-      far = 1 - near
-      waiting(n + 1:n + 2) = 2*node + [far, near]
-      gaps(n + 1:n + 2) = gap([far + 1, near + 1])
-      n = n + 2
-    end do
-    distance = sqrt(distance)
-  end function box_distance
 
 end module curve_search

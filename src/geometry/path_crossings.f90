@@ -2,10 +2,11 @@
 !> points of its start and its end to tell.
 module path_crossings
   use closest_point, only: closest_point_t, whole_piece
+  use curve_boxes, only: box_gap
   use curve_search, only: closest_facing_point
   use kinds, only: eps, wp
   use parabolas, only: point_on, tangent_on
-  use piecewise_curves, only: box_gap, piecewise_curve_t
+  use piecewise_curves, only: piecewise_curve_t
   use plane_vectors, only: cross, right_of
   implicit none
   private

@@ -5,7 +5,7 @@ module piecewise_curves
   use vectors, only: length_of
   implicit none
   private
-  public :: piecewise_curve_t, prepare_search, adjacent_piece, box_of_node, box_gap, blunt
+  public :: piecewise_curve_t, prepare_search, adjacent_piece, blunt
 
   !> A vertex where a curve turns by less than this sine is no corner: parabolas that follow a curve within a tolerance turn by up
   !> to 3 degrees where they meet.
@@ -97,32 +97,5 @@ contains
     next = 0
     if (curve%closed) next = merge(1, size(curve%pieces, 3), way > 0)
   end function adjacent_piece
-
-  !> Box of a node of the tree; nothing is near one that holds no piece.
-  pure function box_of_node(curve, node) result(box)
-    class(piecewise_curve_t), intent(in) :: curve
-    integer, intent(in) :: node
-    real(wp) :: box(4)
-    integer :: piece
-
-    piece = node - size(curve%tree, 2)
-    if (piece <= 0) then
-      box = curve%tree(:, node)
-    else if (piece <= size(curve%boxes, 2)) then
-      box = curve%boxes(:, piece)
-    else
-      box = [huge(1.0_wp), huge(1.0_wp), -huge(1.0_wp), -huge(1.0_wp)]
-    end if
-  end function box_of_node
-
-  !> Square of the distance between two boxes (xmin, ymin, xmax, ymax), 0 when they meet; the first may be empty.
-  pure function box_gap(one, other) result(gap)
-    real(wp), intent(in) :: one(4), other(4)   !! [length]
-    real(wp) :: gap
-
-    gap = huge(gap)
-    if (one(1) > one(3)) return
-    gap = sum(max(one(1:2) - other(3:4), other(1:2) - one(3:4), 0.0_wp)**2)
-  end function box_gap
 
 end module piecewise_curves

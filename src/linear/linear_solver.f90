@@ -6,6 +6,7 @@ module linear_solver
   use kinds, only: i8, wp
   use linear_api, only: factors_t, solver_row_t
   use linear_registry, only: list_solvers
+  use linear_residuals, only: linear_residual, start_rows
   use matrix_pattern, only: matrix_pattern_t
   use text, only: to_text
   use vectors, only: length_of
@@ -21,8 +22,6 @@ module linear_solver
   real(wp), parameter :: worth_refining = 0.25_wp
   !> Forces |A| |x| this many times the right-hand side are round-off of a singular matrix.
   real(wp), parameter :: singular_growth = 1.0e13_wp
-  !> Fewer nonzeros are faster on one thread.
-  integer, parameter :: worth_threads = 50000
 
   !> A solver and its factors, once they were needed.
   type :: solver_stage_t
@@ -113,22 +112,6 @@ contains
       call stage%factors%plan(pattern, solver%position, error)
     end associate
   end subroutine plan_stage
-
-  !> Nonzeros are sorted by row: where every row begins (neq + 1).
-  pure subroutine start_rows(pattern, row_start)
-    class(matrix_pattern_t), intent(in) :: pattern
-    integer, allocatable, intent(out) :: row_start(:)
-    integer :: k
-
-    allocate (row_start(pattern%neq + 1), source=0)
-    do k = 1, pattern%nnz
-      row_start(pattern%row(k) + 1) = row_start(pattern%row(k) + 1) + 1
-    end do
-    row_start(1) = 1
-    do k = 1, pattern%neq
-      row_start(k + 1) = row_start(k + 1) + row_start(k)
-    end do
-  end subroutine start_rows
 
   !> At the start of a step: the fallback of earlier steps does not count, or a resumed run would give other results.
   pure subroutine return_to_chosen(solver)
@@ -282,42 +265,6 @@ contains
       call fail(error, exit_no_convergence, 'the matrix is singular to working precision: is every body held?')
     end if
   end subroutine refine
-
-  !> residual = rhs - A x, and the size of what was summed, |rhs| + |A| |x|: their ratio is the backward error
-  !> (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405-409), which a stiff constraint does not spoil.
-  subroutine linear_residual(pattern, row_start, a, rhs, x, residual, scale)
-    class(matrix_pattern_t), intent(in) :: pattern
-    integer, intent(in) :: row_start(:)   !! nonzeros of row i: row_start(i) ... row_start(i+1)-1
-    real(wp), intent(in) :: a(:), rhs(:), x(:)
-    real(wp), intent(out) :: residual(:), scale
-    real(wp) :: magnitude(size(rhs)), left, large, product
-    integer :: k, i, j
-
-    !$omp parallel do private(k, left, large, product) schedule(static) if (pattern%nnz > worth_threads)
-    do i = 1, pattern%neq
-      left = rhs(i)
-      large = abs(rhs(i))
-      do k = row_start(i), row_start(i + 1) - 1
-        product = a(k)*x(pattern%column(k))
-        left = left - product
-        large = large + abs(product)
-      end do
-      residual(i) = left
-      magnitude(i) = large
-    end do
-    !$omp end parallel do
-    if (pattern%symmetric) then
-      ! the upper triangle, of which the lower one is the mirror
-      do k = 1, pattern%nnz
-        i = pattern%row(k)
-        j = pattern%column(k)
-        if (i == j) cycle
-        residual(j) = residual(j) - a(k)*x(i)
-        magnitude(j) = magnitude(j) + abs(a(k)*x(i))
-      end do
-    end if
-    scale = length_of(magnitude)
-  end subroutine linear_residual
 
   !> Give back what is held; the choice of the solver stays.
   subroutine release(solver)

@@ -12,7 +12,7 @@
 !> are, and where no point is below 0 so do all bits. The wall stands still and does no work.
 module axis_wall
   use bodies, only: elements_at_middles
-  use contact_point, only: share_of_way
+  use contact_overlap, only: share_of_way
   use dofs, only: dofs_t
   use elem_api, only: report_t
   use fields, only: displacement_field

@@ -22,13 +22,13 @@ module damping
   use bodies, only: bodies_of_nodes
   use contact_changes, only: touching_dies
   use convergence, only: relative_residual
-  use dofs, only: prescribed_motion
   use elem_api, only: block_done, report_t
   use elem_body_springs, only: volume_of_body
   use equations, only: equations_t, take_turn
   use evaluation, only: evaluate
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
+  use prescribed_unknowns, only: prescribed_motion
   use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use vectors, only: length_of

@@ -1,10 +1,11 @@
 !> Numbering, pattern and analysis of the equations: once per mesh, and again where contact between bodies finds other pairs.
 module equation_set_up
   use axis_wall, only: find_axis_wall
-  use dofs, only: number_dofs, number_pairs
+  use dof_numbering, only: number_dofs
   use driver_sources, only: find_drivers
   use elem_heat_contact, only: name_of_piece
   use elem_registry, only: list_elems
+  use element_dofs, only: number_pairs
   use equations, only: equations_t
   use errors, only: error_t, exit_machine, fail
   use fields, only: displacement_field

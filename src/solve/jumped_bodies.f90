@@ -3,10 +3,10 @@
 !> A body that no support holds is in equilibrium without forces wherever it touches nothing: Newton's method may end there from any
 !> state, as where a billet turns under a tilted die, and the part jumps out of its dies. Shorter steps tell whether it would.
 module jumped_bodies
-  use dofs, only: prescribed_motion
   use equations, only: equations_t
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
+  use prescribed_unknowns, only: prescribed_motion
   use scene, only: scene_t
   use solution, only: solution_t
   implicit none

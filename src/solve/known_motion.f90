@@ -1,10 +1,11 @@
 !> What is known of the motion of a step before it is solved for: that of prescribed unknowns, of unknowns of other solves, of dies
 !> that leave the part, and what turns back; else the last motion, in proportion.
 module known_motion
-  use dofs, only: dofs_t, prescribed_motion
+  use dofs, only: dofs_t
   use equations, only: equations_t
   use fields, only: displacement_field, field_t, pilot_field
   use kinds, only: wp
+  use prescribed_unknowns, only: prescribed_motion
   use scene, only: scene_t
   use solution, only: solution_t
   use turning_back, only: reversed_unknowns, turn_back

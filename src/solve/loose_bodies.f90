@@ -5,7 +5,7 @@
 !> the matrix is singular, it is found again with diagonals that are a little larger. That changes no force.
 module loose_bodies
   use bodies, only: bodies_of_nodes
-  use contact_point, only: at_between, at_piece, at_pressure, contact_block, is_in_contact
+  use contact_state, only: at_between, at_piece, at_pressure, contact_block, is_in_contact
   use dofs, only: dofs_t
   use fields, only: displacement_field
   use kinds, only: wp

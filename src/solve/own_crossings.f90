@@ -7,7 +7,7 @@
 module own_crossings
   use arc_crossings, only: crossings_between, find_meeting_arcs, most_crossings
   use bodies, only: bodies_of_nodes, elements_at_middles
-  use contact_point, only: at_piece, at_status
+  use contact_state, only: at_piece, at_status
   use dofs, only: dofs_t
   use fields, only: displacement_field
   use kinds, only: wp

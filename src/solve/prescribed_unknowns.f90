@@ -1,15 +1,21 @@
 !> Unknowns whose motion, or whose value, is known.
-submodule(dofs) prescribed_unknowns
-  use fields, only: find_field, pilot_field, section_field
+module prescribed_unknowns
+  use dofs, only: dofs_t, prescribed_t
+  use fields, only: field_t, find_field, pilot_field, section_field
+  use kinds, only: wp
   use loads, only: instants_around, multiplier_at
-  use scene, only: is_later_operation
+  use scene, only: is_later_operation, scene_t
   use sections, only: section_forced, section_moved
   implicit none
+  private
+  public :: list_prescribed, prescribed_motion
 
 contains
 
   !> Fixations, imposed displacements and pilots; an unknown held twice is listed once.
-  module procedure list_prescribed
+  subroutine list_prescribed(scene, dofs)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(inout) :: dofs
     type(prescribed_t) :: by_dof(dofs%ndof)
     integer :: k, i, d
 
@@ -82,10 +88,16 @@ contains
       end do
     end subroutine list_die_temperatures
 
-  end procedure list_prescribed
+  end subroutine list_prescribed
 
   !> Motion of the prescribed unknowns from time t0 (or from rest) to t1, in the order of the list.
-  module procedure prescribed_motion
+  pure subroutine prescribed_motion(scene, dofs, fields, from_rest, t0, t1, motion)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    type(field_t), intent(in) :: fields(:)   !! (nfield) with their values at t0
+    logical, intent(in) :: from_rest
+    real(wp), intent(in) :: t0, t1       !! [time]
+    real(wp), intent(out) :: motion(:)   !! (nprescribed) [unknown]
     integer :: k, before, last
     real(wp) :: share
 
@@ -114,6 +126,6 @@ contains
         motion(k) = p%amplitude*motion(k)
       end associate
     end do
-  end procedure prescribed_motion
+  end subroutine prescribed_motion
 
-end submodule prescribed_unknowns
+end module prescribed_unknowns

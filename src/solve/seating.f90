@@ -12,7 +12,6 @@
 module seating
   use axis_contact, only: depth_of_bearing
   use closest_point, only: closest_point_t
-  use contact_point, only: touching
   use curve_search, only: closest_facing_point
   use dies, only: in_pilot_axes, is_deformable
   use dofs, only: dofs_t
@@ -21,6 +20,7 @@ module seating
   use plane_vectors, only: turned
   use resting_dies, only: has_spring, idle_dies
   use scene, only: axisymmetric, role_contact, scene_t
+  use side_points, only: touching
   use solution, only: present_coordinates, solution_t
   use vectors, only: length_of
   implicit none

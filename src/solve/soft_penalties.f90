@@ -11,7 +11,8 @@
 !> little depth is much of the force. A penalty that the deck states is not touched.
 module soft_penalties
   use contact_penalties, only: penalties_of_card, penalties_t
-  use contact_point, only: at_penetration, at_pressure, at_status, contact_block, usual_bearing
+  use contact_point, only: usual_bearing
+  use contact_state, only: at_penetration, at_pressure, at_status, contact_block
   use dofs, only: dofs_t
   use fields, only: displacement_field
   use iteration_history, only: iteration_t

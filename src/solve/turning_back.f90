@@ -7,7 +7,7 @@
 !> found sooner from a motion that goes on, while dies that leave are followed (leaving_dies).
 module turning_back
   use bodies, only: bodies_of_nodes
-  use contact_point, only: at_piece, is_in_contact
+  use contact_state, only: at_piece, is_in_contact
   use dies, only: is_deformable
   use dofs, only: dofs_t
   use fields, only: displacement_field, pilot_field, section_field

@@ -4,7 +4,7 @@ module result_dies
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use plane_vectors, only: turned
-  use xdmf_writer, only: xdmf_field_t, xdmf_grid_t
+  use xdmf_grid, only: xdmf_field_t, xdmf_grid_t
   implicit none
   private
   public :: write_die_topology, put_dies

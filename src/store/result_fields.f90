@@ -10,7 +10,7 @@ module result_fields
   use solution, only: solution_t
   use state_variables, only: component_names, state_variable_t, total_components
   use text, only: string_t, to_text
-  use xdmf_writer, only: xdmf_field_t, xdmf_grid_t
+  use xdmf_grid, only: xdmf_field_t, xdmf_grid_t
   implicit none
   private
   public :: put_field, put_vector, put_nodal_fields, put_cells, put_points

@@ -17,7 +17,8 @@ module results
   use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use system, only: base_name, file_exists, make_directory, remove_file, rename_file
-  use xdmf_writer, only: xdmf_grid_t, xdmf_t
+  use xdmf_grid, only: xdmf_grid_t
+  use xdmf_writer, only: xdmf_t
   implicit none
   private
   public :: results_t, forget_failure, open_results, save_fields, save_failure

@@ -2,7 +2,7 @@
 !> side's; motions are those of all nodes, forces and matrices too, x then y of each, and in generalised
 !> plane strain of the section at last.
 module pair_cases
-  use contact_point, only: at_piece
+  use contact_state, only: at_piece
   use dies, only: place_edges, place_on_nodes
   use elem_api, only: elem_t, instant_t, report_t
   use element_cases, only: elem_row, kinematics_row, step_of_differences

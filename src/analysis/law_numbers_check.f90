@@ -1,0 +1,79 @@
+!> Numbers of a law that no metal has: units were mixed, or a number is in per cent or in millionths.
+module law_numbers_check
+  use kinds, only: wp
+  use law_api, only: driver_count, find_parameter, law_t
+  use scene, only: scene_t
+  use text, only: add => add_text, string_t, to_text
+  implicit none
+  private
+  public :: judge_alpha, judge_friction, judge_yield
+
+  !> Metals yield at less than this share of Young's modulus: the strongest steels and glassy metals at 0.01 to 0.02.
+  real(wp), parameter :: largest_yield = 0.03_wp
+  !> Dry metals rub at less, hot ones that stick at their shear flow stress (M).
+  real(wp), parameter :: largest_friction = 1.0_wp
+  !> Metals expand by 1e-5 to 3e-5 of their length for a degree, polymers by 3e-4.
+  real(wp), parameter :: largest_alpha = 0.01_wp
+
+contains
+
+  !> A yield stress that no metal has beside its modulus: units mixed.
+  subroutine judge_yield(scene, laws, m, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: m
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: young, poisson, yield
+
+    associate (material => scene%materials(m), law => laws(scene%materials(m)%law_id))
+      if (law%name /= 'EPLA') return
+      block
+        real(wp) :: drivers(driver_count(law)), history(size(law%history)*4)
+
+        drivers = 0
+        if (allocated(material%temperatures)) drivers(1) = material%temperatures(1)
+        history = 0
+        call law%elastic(material, drivers(1), young, poisson)
+        yield = law%flow_stress(material, drivers, history)
+      end block
+      if (yield > largest_yield*young) call add(warnings, 'law '//material%name//': it yields at '//to_text(yield/young, 3) &
+        //' of E, metals below '//to_text(largest_yield)//': are E and stresses in one unit?')
+    end associate
+  end subroutine judge_yield
+
+  !> A coefficient of friction that no pair of metals has, and nothing beside it that bounds friction: a percentage.
+  subroutine judge_friction(scene, laws, m, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: m
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: phi
+
+    associate (material => scene%materials(m), law => laws(scene%materials(m)%law_id))
+      if (find_parameter(law, 'PHI') == 0) return
+      phi = material%values(find_parameter(law, 'PHI'))
+      if (.not. (phi > largest_friction .and. phi < huge(phi))) return
+      if (min(material%values(find_parameter(law, 'M')), material%values(find_parameter(law, 'TAUMAX'))) < huge(phi)) return
+      call add(warnings, 'law '//material%name//': its coefficient of friction is '//to_text(phi, 3)//', of metals below ' &
+               //to_text(largest_friction)//': is it in percent? Above 1 an equilibrium need not exist (what sticks: GLUE2D)')
+    end associate
+  end subroutine judge_friction
+
+  !> A coefficient of expansion that no solid has: given in millionths.
+  subroutine judge_alpha(scene, laws, m, warnings)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    integer, intent(in) :: m
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    integer :: k
+
+    associate (material => scene%materials(m), law => laws(scene%materials(m)%law_id))
+      k = find_parameter(law, 'ALPHA')
+      if (k == 0) return
+      if (material%values(k) > largest_alpha) call add(warnings, 'law '//material%name//': it expands by ' &
+        //to_text(material%values(k), 3)//' of its length for each degree, solids by less than '//to_text(largest_alpha) &
+        //': is ALPHA in 1e-6?')
+    end associate
+  end subroutine judge_alpha
+
+end module law_numbers_check
