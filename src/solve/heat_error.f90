@@ -36,7 +36,7 @@ module heat_error
   use step_outcome, only: outcome_t
   implicit none
   private
-  public :: diagonal, estimate_error, flows, weight
+  public :: diagonal, estimate_error, flows, flows_of, leave, take, weight
 
   !> D and W of TR-BDF2.
   real(wp), parameter :: diagonal = 1 - 1/sqrt(2.0_wp), weight = sqrt(2.0_wp)/4
