@@ -44,10 +44,11 @@ contains
 
   !> State of the solids and nodal fields: initial position of the material points, displacement of the last step, and displacement
   !> since the start where the mesh is not updated.
-  subroutine carry_solids(old, before, moved, new, after, report, error)
+  subroutine carry_solids(old, before, moved, cut, new, after, report, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
     real(wp), intent(in) :: moved(:, :)   !! (2, nnode) [length]
+    logical, intent(in) :: cut(:)         !! bodies a part of which was cut off (ngroup)
     type(scene_t), intent(inout) :: new
     type(solution_t), intent(inout) :: after
     type(transfer_report_t), intent(out) :: report
@@ -56,7 +57,7 @@ contains
     type(transfer_options_t) :: options
     type(transfer_mesh_t) :: mesh, target, rest
     integer, allocatable :: material(:)
-    integer :: k
+    integer :: k, g
 
     options%method = old%remesher%transfer
     options%exponent = old%remesher%exponent
@@ -72,6 +73,11 @@ contains
     call change_volume_ratios(rest%volumes, mesh%volumes, from)
     call build_mesh_trees(mesh)
     call mesh_of(to, target)
+    allocate (options%cut(max(mesh%nmaterial, target%nmaterial)), source=.false.)
+    do k = 1, size(from%groups)
+      g = from%groups(k)%scene_group
+      if (cut(g)) options%cut(from%groups(k)%material) = .true.
+    end do
     call carry_states(mesh, target, from, to, options, report, error)
     if (allocated(error)) return
     call store_states(to, after)
@@ -80,19 +86,19 @@ contains
     do k = 1, size(target%material)
       material(target%connectivity(:, k)) = target%material(k)
     end do
-    call carry_nodes(mesh, target, old, before, moved, material, options%outside, new, after, error)
+    call carry_nodes(mesh, target, old, before, moved, material, options, new, after, error)
   end subroutine carry_solids
 
   !> What belongs to nodes, by the shape functions of the old mesh: origin of the material, and of every field on nodes the change
   !> of the last step and the value; of the displacement the value is what was `moved`. What is solved for beside the motion, as the
   !> temperature, keeps its means.
-  subroutine carry_nodes(mesh, target, old, before, moved, material, outside, new, after, error)
+  subroutine carry_nodes(mesh, target, old, before, moved, material, options, new, after, error)
     type(transfer_mesh_t), intent(in) :: mesh, target
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
     real(wp), intent(in) :: moved(:, :)      !! (2, nnode) [length]
     integer, intent(in) :: material(:)       !! of the new nodes (nnode)
-    real(wp), intent(in) :: outside
+    type(transfer_options_t), intent(in) :: options
     type(scene_t), intent(inout) :: new
     type(solution_t), intent(inout) :: after
     type(error_t), allocatable, intent(out) :: error
@@ -123,14 +129,14 @@ contains
         end associate
       end do
       if (pass == 2) exit
-      call carry_at_nodes(mesh, from, new%mesh%coordinates, material, outside, to, farthest, error)
+      call carry_at_nodes(mesh, from, new%mesh%coordinates, material, options%outside, to, farthest, error)
       if (allocated(error)) return
     end do
     new%mesh%origin = to(1:2, :)
     do f = 1, size(before%fields)
       if (.not. is_carried(f) .or. before%fields(f)%given .or. before%fields(f)%quantity == 'motion') cycle
       do k = 1, before%fields(f)%ncomp
-        call keep_nodal_means(mesh, before%fields(f)%value(k, :), has_corners_only(before%fields(f)), outside, target, &
+        call keep_nodal_means(mesh, before%fields(f)%value(k, :), has_corners_only(before%fields(f)), options, target, &
                               after%fields(f)%value(k, :), error)
         if (allocated(error)) return
       end do

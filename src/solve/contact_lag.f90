@@ -2,9 +2,9 @@
 !> found with, those of the contact at the start of the step, beside what passes by those of the contact that they lead to.
 !>
 !> In short steps the difference goes with the step. A part that shrinks as it cools on a die, however, presses on it in one step
-!> and not in the next, where heat passes by the pressure before: conductances a step behind make any step unstable in which the heat
-!> of the contact takes away its pressure (an explicit rule for a stiff equation; on the coupling J.R. Barber, J. Elast. 8 (1978)
-!> 409-423). Where the difference is a large share of what passes the fields are found in turns until little of it is left
+!> and not in the next, where heat passes by the pressure before: conductances a step behind make any step unstable in which the
+!> heat of the contact takes away its pressure (an explicit rule for a stiff equation; on the coupling J.R. Barber, J. Elast. 8
+!> (1978) 409-423). Where the difference is a large share of what passes the fields are found in turns until little of it is left
 !> (step_solves).
 !>
 !> What is left is an error of the step, as that of its time scheme is: with A the flows out of the nodes by the conductances used
