@@ -213,6 +213,20 @@ contains
     call make_cuts(old, before, contours, facts%cuts, error)
   end subroutine cut_bodies
 
+  !> Bodies a part of which was cut off for the new mesh (ngroup).
+  pure function cut_now(old, facts) result(yes)
+    type(scene_t), intent(in) :: old
+    type(remesh_facts_t), intent(in) :: facts
+    logical :: yes(size(old%groups))
+    integer :: k
+
+    yes = .false.
+    if (.not. allocated(facts%cuts)) return
+    do k = 1, size(facts%cuts)
+      if (facts%cuts(k)%generation == facts%generation) yes(old%remesher%cuts(k)%group) = .true.
+    end do
+  end function cut_now
+
   !> What was cut off is no drift of the volume. It was pressed together otherwise than what is left: the web of a punched hole more
   !> than the sheet around it. So both have a share of the first volume by their volumes without elastic strain.
   subroutine note_cuts(old, before, contours, new, facts, after)
@@ -267,7 +281,7 @@ contains
     call carry_progress(old, before, after)
     ! of the error of the stress no more than its size is followed on the new mesh
     after%path%whole_before = before%path%stress_whole
-    call carry_solids(old, before, moved, new, after, facts%transfer, error)
+    call carry_solids(old, before, moved, cut_now(old, facts), new, after, facts%transfer, error)
     if (allocated(error)) return
     call begin_task(facts, 'contact', 'contact')
     call carry_contacts(old, before, contours, mesh, new, after, facts%contacts)

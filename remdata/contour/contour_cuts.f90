@@ -26,6 +26,8 @@ module contour_cuts
   integer, parameter :: chords = 4
   !> Where they meet, cuts and joints closer than this share of the smallest element are one point.
   real(wp), parameter :: close_to_joint = 0.25_wp
+  !> A cut that removes no more than this share of the volume removes nothing: round-off of the volumes.
+  real(wp), parameter :: nothing = 1.0e-9_wp
 
 contains
 
@@ -93,6 +95,10 @@ contains
     call replace_contours(scene, solution, cut, of_body, pieces, contours)
     record%volume = before - total_volume(contours, [(group_of(scene, contours(c)%loop, c) == cut%group, c=1, size(contours))], &
                                           solution%fields(section_field)%value(:, 1))
+    if (is_trim(cut) .and. .not. record%volume > nothing*before) &
+      call fail(error, exit_input, 'TRIM '//scene%groups(cut%group)%name//': the line from '//point_text(cut%line(1:2))//' to ' &
+                //point_text(cut%line(3:4))//' is along the side of the body, so that nothing is cut', &
+                'corners closer to it than a quarter of the smallest element are on it: give a line farther inside')
   end subroutine make_cut
 
   !> Volume of those of the contours that `among` names.

@@ -2,12 +2,12 @@
 module carry_solution
   use bearing_nodes, only: open_share
   use errors, only: error_t
-  use fields, only: displacement_field, has_corners_only, on_nodes
+  use fields, only: displacement_field, fill_middle_nodes, find_field, has_corners_only, on_nodes
   use kept_members, only: member_memory_t
   use kinds, only: wp
   use nodal_balance, only: keep_nodal_means
   use remeshing, only: carry_error
-  use scene, only: scene_t
+  use scene, only: is_solid, scene_t
   use solution, only: solution_t
   use state_pieces, only: change_volume_ratios, mesh_of, solid_pieces, state_pieces_t, store_states, take_values
   use transfer_api, only: transfer_options_t
@@ -44,10 +44,11 @@ contains
 
   !> State of the solids and nodal fields: initial position of the material points, displacement of the last step, and displacement
   !> since the start where the mesh is not updated.
-  subroutine carry_solids(old, before, moved, new, after, report, error)
+  subroutine carry_solids(old, before, moved, cut, new, after, report, error)
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
     real(wp), intent(in) :: moved(:, :)   !! (2, nnode) [length]
+    logical, intent(in) :: cut(:)         !! bodies a part of which was cut off (ngroup)
     type(scene_t), intent(inout) :: new
     type(solution_t), intent(inout) :: after
     type(transfer_report_t), intent(out) :: report
@@ -56,7 +57,7 @@ contains
     type(transfer_options_t) :: options
     type(transfer_mesh_t) :: mesh, target, rest
     integer, allocatable :: material(:)
-    integer :: k
+    integer :: k, g
 
     options%method = old%remesher%transfer
     options%exponent = old%remesher%exponent
@@ -72,6 +73,11 @@ contains
     call change_volume_ratios(rest%volumes, mesh%volumes, from)
     call build_mesh_trees(mesh)
     call mesh_of(to, target)
+    allocate (options%cut(max(mesh%nmaterial, target%nmaterial)), source=.false.)
+    do k = 1, size(from%groups)
+      g = from%groups(k)%scene_group
+      if (cut(g)) options%cut(from%groups(k)%material) = .true.
+    end do
     call carry_states(mesh, target, from, to, options, report, error)
     if (allocated(error)) return
     call store_states(to, after)
@@ -80,30 +86,33 @@ contains
     do k = 1, size(target%material)
       material(target%connectivity(:, k)) = target%material(k)
     end do
-    call carry_nodes(mesh, target, old, before, moved, material, options%outside, new, after, error)
+    call carry_nodes(mesh, target, old, before, moved, material, options, new, after, error)
   end subroutine carry_solids
 
   !> What belongs to nodes, by the shape functions of the old mesh: origin of the material, and of every field on nodes the change
   !> of the last step and the value; of the displacement the value is what was `moved`. What is solved for beside the motion, as the
   !> temperature, keeps its means.
-  subroutine carry_nodes(mesh, target, old, before, moved, material, outside, new, after, error)
+  subroutine carry_nodes(mesh, target, old, before, moved, material, options, new, after, error)
     type(transfer_mesh_t), intent(in) :: mesh, target
     type(scene_t), intent(in) :: old
     type(solution_t), intent(in) :: before
     real(wp), intent(in) :: moved(:, :)      !! (2, nnode) [length]
     integer, intent(in) :: material(:)       !! of the new nodes (nnode)
-    real(wp), intent(in) :: outside
+    type(transfer_options_t), intent(in) :: options
     type(scene_t), intent(inout) :: new
     type(solution_t), intent(inout) :: after
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: from(:, :), to(:, :)
     real(wp) :: farthest
     integer :: f, k, n, pass
+    logical :: has_errors
 
     n = 2
     do f = 1, size(before%fields)
       if (is_carried(f)) n = n + 2*before%fields(f)%ncomp
     end do
+    has_errors = size(before%heat%temperature_error) == size(moved, 2) .and. size(after%heat%temperature_error) == size(material)
+    if (has_errors) n = n + 1
     allocate (from(n, size(moved, 2)), to(n, size(material)))
     from(1:2, :) = old%mesh%origin
     do pass = 1, 2
@@ -122,15 +131,24 @@ contains
           n = n + 2*m
         end associate
       end do
+      if (has_errors) then
+        if (pass == 1) from(n + 1:, :) = errors_at_nodes(old, before)
+        if (pass == 2) after%heat%temperature_error = to(n + 1, :)
+      end if
       if (pass == 2) exit
-      call carry_at_nodes(mesh, from, new%mesh%coordinates, material, outside, to, farthest, error)
+      call carry_at_nodes(mesh, from, new%mesh%coordinates, material, options%outside, to, farthest, error)
       if (allocated(error)) return
     end do
     new%mesh%origin = to(1:2, :)
+    if (has_errors) then
+      ! errors of the temperatures go on as these do; those of the heat contents are found from them (heat_error_start)
+      after%heat%error_of_mesh = before%heat%error_of_mesh
+      if (size(after%heat%die_error) == size(before%heat%die_error)) after%heat%die_error = before%heat%die_error
+    end if
     do f = 1, size(before%fields)
       if (.not. is_carried(f) .or. before%fields(f)%given .or. before%fields(f)%quantity == 'motion') cycle
       do k = 1, before%fields(f)%ncomp
-        call keep_nodal_means(mesh, before%fields(f)%value(k, :), has_corners_only(before%fields(f)), outside, target, &
+        call keep_nodal_means(mesh, before%fields(f)%value(k, :), has_corners_only(before%fields(f)), options, target, &
                               after%fields(f)%value(k, :), error)
         if (allocated(error)) return
       end do
@@ -146,5 +164,21 @@ contains
     end function is_carried
 
   end subroutine carry_nodes
+
+  !> Errors of the temperatures in time, at middle nodes too where temperatures stand on corners.
+  pure function errors_at_nodes(scene, solution) result(errors)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp) :: errors(1, size(solution%heat%temperature_error))   !! [temperature]
+    integer :: f, g
+
+    errors(1, :) = solution%heat%temperature_error
+    f = find_field(scene%fields, 'temperature')
+    if (f == 0) return
+    if (.not. has_corners_only(solution%fields(f))) return
+    do g = 1, size(scene%groups)
+      if (is_solid(scene%groups(g))) call fill_middle_nodes(scene%groups(g)%connectivity, errors)
+    end do
+  end function errors_at_nodes
 
 end module carry_solution

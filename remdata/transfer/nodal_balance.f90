@@ -10,7 +10,8 @@ module nodal_balance
   use kinds, only: wp
   use quadrature, only: square_rule
   use shape_functions, only: quad4, quad8
-  use transfer_balance, only: same_integral, was_cut
+  use transfer_api, only: transfer_options_t
+  use transfer_balance, only: same_integral
   use transfer_map, only: carry, transfer_map_t
   use transfer_mesh, only: transfer_mesh_t
   use transfer_nodes, only: shape_weights
@@ -24,11 +25,11 @@ contains
 
   !> Values at the nodes of a new mesh, carried there by shape functions, so that the means over the materials are those of the old.
   !> Nodes that materials share stay as they are.
-  subroutine keep_nodal_means(old, values, corners_only, outside, new, new_values, error)
+  subroutine keep_nodal_means(old, values, corners_only, options, new, new_values, error)
     type(transfer_mesh_t), intent(in) :: old, new   !! the old one with its trees
     real(wp), intent(in) :: values(:)               !! (nnode) of the old mesh [unit of the field]
     logical, intent(in) :: corners_only             !! in the middle of sides the field is the mean of the ends
-    real(wp), intent(in) :: outside                 !! how far an element is extrapolated, in halves of an element
+    type(transfer_options_t), intent(in) :: options
     real(wp), intent(inout) :: new_values(:)        !! (nnode) [unit of the field]
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: old_at_points(1, size(new%volumes)), lower, upper, mean, volume
@@ -37,7 +38,7 @@ contains
     integer :: m, k
 
     if (corners_only) call fill_middle(new, new_values)
-    call shape_weights(old, old%connectivity, new%points, new%point_material, outside, map, error)
+    call shape_weights(old, old%connectivity, new%points, new%point_material, options%outside, map, error)
     if (allocated(error)) return
     call carry(map, reshape(values, [1, size(values)]), old_at_points)
     do m = 1, new%nmaterial
@@ -62,8 +63,7 @@ contains
       volume = sum(new%volumes, mask=here)
       mean = mean_of_nodal(old, m, values)
       ! a part that was cut has the mean of what is left, as far as the new points see it
-      if (was_cut(sum(old%volumes, mask=old%point_material == m), volume)) &
-        mean = sum(old_at_points(1, :)*new%volumes, mask=here)/volume
+      if (options%was_cut(m)) mean = sum(old_at_points(1, :)*new%volumes, mask=here)/volume
       call keep_mean_of_all(new, m, own, corners_only, mean, lower, upper, new_values)
     end do
   end subroutine keep_nodal_means

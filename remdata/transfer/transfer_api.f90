@@ -29,6 +29,11 @@ module transfer_api
     integer :: limit = limit_material
     !> Correct scalars and fractions so that their means over the volume of a material stay.
     logical :: conserve = .true.
+    !> Materials a part of which was cut off between the meshes (nmaterial), none where not allocated: means of the whole are none
+    !> of what is left, however little is gone.
+    logical, allocatable :: cut(:)
+  contains
+    procedure, public :: was_cut
   end type transfer_options_t
 
   !> One method. Its index in the list is its number + 1.
@@ -55,6 +60,16 @@ module transfer_api
   end interface
 
 contains
+
+  !> A part of the material was cut off between the meshes.
+  pure function was_cut(options, material) result(yes)
+    class(transfer_options_t), intent(in) :: options
+    integer, intent(in) :: material
+    logical :: yes
+
+    yes = .false.
+    if (allocated(options%cut)) yes = options%cut(material)
+  end function was_cut
 
   !> Every material of the new points must have points in the old mesh.
   pure subroutine check_materials(mesh, material, error)

@@ -8,25 +8,14 @@ module transfer_balance
   use kinds, only: eps, wp
   implicit none
   private
-  public :: integral, keep_mean, keep_mean_fractions, same_integral, was_cut
+  public :: integral, keep_mean, keep_mean_fractions, same_integral
 
   !> Sweeps of the corrections; one is enough where |lambda| < 1.
   integer, parameter :: most_sweeps = 200
   !> Integrals that differ by less of the range times the volume are equal: the round-off of sums of a million points.
   real(wp), parameter :: same_integral = 1000*eps
 
-  !> New contours change the volume of a body by less than this share of it; more was cut off.
-  real(wp), parameter :: same_volume = 1.0e-3_wp
-
 contains
-
-  !> A part of a body was cut off between two meshes.
-  pure function was_cut(old_volume, new_volume) result(yes)
-    real(wp), intent(in) :: old_volume, new_volume   !! [volume]
-    logical :: yes
-
-    yes = new_volume < (1 - same_volume)*old_volume
-  end function was_cut
 
   pure function integral(values, volumes) result(total)
     real(wp), intent(in) :: values(:), volumes(:)   !! (npoint) [unit of the variable]; (npoint) [volume]

@@ -4,7 +4,7 @@ module transfer_treatment
   use state_variables, only: component_names, state_variable_t, transfer_fraction, transfer_scalar
   use text, only: add_text, string_t
   use transfer_api, only: limit_none, limit_sources, transfer_options_t
-  use transfer_balance, only: integral, keep_mean, keep_mean_fractions, was_cut
+  use transfer_balance, only: integral, keep_mean, keep_mean_fractions
   use transfer_limits, only: clip, fractions_rule, keep_fractions, sum_is_one
   use transfer_map, only: range_of_sources, transfer_map_t
   use transfer_mesh, only: transfer_mesh_t
@@ -85,7 +85,7 @@ contains
     end do
     rows%limited = [(integral(new(:, k), new_volumes), k=1, size(rows))]
     ! means of the whole are none of what a cut has left
-    if (options%conserve .and. .not. was_cut(sum(old_volumes), sum(new_volumes))) then
+    if (options%conserve .and. .not. options%was_cut(m)) then
       growth = sum(new_volumes)/sum(old_volumes)
       call conserve_scalars(variables, growth, new_volumes, rows, new)
       do i = 1, size(formulations)

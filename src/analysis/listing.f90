@@ -96,6 +96,8 @@ contains
     call list_iterations(listing, outcome)
     if (outcome%gave_way) write (listing%unit, '(a)') '  augmentation '//to_text(outcome%augmentations + 1) &
       //' of contact had no equilibrium: the one before it was kept'
+    if (outcome%contact_lag > 0) write (listing%unit, '(a)') '  heat and contact do not agree: '// &
+      to_text(100*outcome%contact_lag, 3)//' % of what passes at contact is another by the pressures and gaps that it leads to'
     if (outcome%left_unstable) write (listing%unit, '(a)') '  the equilibrium found first is not stable: looked for again, downhill'
     if (outcome%unstable > 0) write (listing%unit, '(a)') '  the equilibrium is not stable: eigenvalues of its matrix below 0: ' &
       //to_text(outcome%unstable)

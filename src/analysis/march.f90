@@ -25,6 +25,7 @@ module march
   use step_strategy, only: after_success, choose_step
   use system, only: caught_signal
   use text, only: to_text
+  use unsettled_contact, only: note_unsettled_contact
   use watch_mesh, only: estimate, look_at_mesh, mesh_is_due
   implicit none
   private
@@ -110,6 +111,7 @@ contains
     if (.not. (at_end(scene, solution) .or. solution%damping > 0)) &
       call look_at_mesh(scene, run%equations%timers, run%listing, solution)
     call report_spurious_mode(scene, solution, run)
+    call note_unsettled_contact(scene, solution, outcome, run)
     call show_progress(run%listing, scene, solution, outcome%iterations)
     if (on_probation) call judge_steps(scene, solution, outcome, run, error)
     if (.not. allocated(error)) call record(scene, solution, outcome, run, error)

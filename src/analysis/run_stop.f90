@@ -4,13 +4,12 @@ module run_stop
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
   use fields, only: displacement_field, find_field
-  use heat_contacts, only: jumps_at_opening
   use kinds, only: wp
   use law_api, only: find_parameter, law_t
   use own_contact, only: passes_itself_advice, passes_itself_words, thins_out_advice, thins_out_words
   use results, only: save_failure
   use run_record, only: run_t, save_all, at_end
-  use scene, only: role_heat_contact, role_side_load, scene_t
+  use scene, only: role_side_load, scene_t
   use sliding_bodies, only: sliding_words
   use solution, only: solution_t
   use spurious_mode, only: may_stand_alone
@@ -20,6 +19,7 @@ module run_stop
   use system, only: caught_signal
   use text, only: to_text
   use unheld_dies, only: limit_load_words, unheld_die_t, unheld_die_words
+  use unsettled_contact, only: loses_touch, touch_advice
   use watch_mesh, only: mesh_is_due, remesh_reason
   implicit none
   private
@@ -71,10 +71,9 @@ contains
     if (solution%confinement%now) advice = confinement_words(scene, solution%confinement)//'; '//advice
     if (index(outcome%reason, 'singular') > 0 .and. any(may_stand_alone(scene%groups))) advice = advice//'; a body of few ' &
       //'elements with 4 integration points has a motion that nothing resists, 9 points with MEAN have none'
-    if (loses_touch(scene)) &
+    if (scene%strategy%coupling /= coupling_once .and. scene%fields(displacement_field)%declared .and. loses_touch(scene)) &
       advice = advice//'; heat that jumps as a point opens (COU2DC) may leave no equilibrium to a part that shrinks away from a ' &
-               //'die: let PRESS begin, at pressure 0, with what GAP and HO give at gap 0, and grow over a pressure of 1e-5 of ' &
-               //'Young''s modulus or more'
+               //'die: '//touch_advice
     what = 'no convergence'
     if (is_steep(scene, run%equations%laws)) advice = advice//'; friction by M has no bound by the pressure but PHI: PHI 1 ' &
       //'beside M, above which an equilibrium need not exist'
@@ -91,23 +90,6 @@ contains
               advice)
     if (allocated(late)) error%advice = error%advice//' (and '//late%message//')'
   end subroutine stop_here
-
-  !> Heat at a contact, found together with the motion, jumps where points open, or all but jumps: over a pressure by which the body
-  !> is strained as by some hundredths of a degree.
-  pure function loses_touch(scene)
-    type(scene_t), intent(in) :: scene
-    logical :: loses_touch
-    real(wp), parameter :: little = 1.0e-6_wp   ! of Young's modulus
-    integer :: g
-
-    loses_touch = .false.
-    if (scene%strategy%coupling == coupling_once .or. .not. scene%fields(displacement_field)%declared) return
-    do g = 1, size(scene%groups)
-      if (scene%groups(g)%role /= role_heat_contact) cycle
-      loses_touch = loses_touch .or. jumps_at_opening(scene%groups(g)%heat_contact, &
-                                                     little*scene%groups(scene%groups(g)%host)%modulus)
-    end do
-  end function loses_touch
 
   !> What leads past a limit load: the multiplier of loads is found (LOADF), or another measure where that turns back; a die is
   !> moved. Nothing where no load acts that may be found.

@@ -20,6 +20,8 @@ module probe_places
   !> After a cut a place belongs to a body up to this share of its nearest element outside: where matter was in the deck's own mesh
   !> is carried from mesh to mesh, with errors beside corners that have folded.
   real(wp), parameter :: still_inside = 0.1_wp
+  !> Of several that are as near, to round-off of their coordinates, the first is taken, in whatever units.
+  real(wp), parameter :: nearer = 1.0_wp - 1.0e-9_wp
 
 contains
 
@@ -53,7 +55,7 @@ contains
     do e = 1, size(body%connectivity, 2)
       do n = 1, size(body%connectivity, 1)
         distance = length_of(coordinates(:, body%connectivity(n, e)) - x)
-        if (.not. distance < least) cycle
+        if (.not. distance < nearer*least) cycle
         least = distance
         node = body%connectivity(n, e)
       end do
@@ -92,7 +94,7 @@ contains
       do p = 1, size(phi, 2)
         here = matmul(coordinates(:, group%connectivity(:, e)), phi(:, p))
         d = length_of(here - x)
-        if (.not. d < distance) cycle
+        if (.not. d < nearer*distance) cycle
         distance = d
         place = here
         element = e

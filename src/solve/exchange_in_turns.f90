@@ -18,7 +18,7 @@ module exchange_in_turns
   use vectors, only: length_of
   implicit none
   private
-  public :: turns_t, begin_exchange, advance_exchange, end_exchange
+  public :: turns_t, begin_exchange, advance_exchange, end_exchange, hand_over_again, hand_over_reached
 
   !> So many differences are kept.
   integer, parameter :: most_differences = 12
@@ -30,6 +30,8 @@ module exchange_in_turns
   real(wp), parameter :: slack_of_motion = 100.0_wp, slack_of_values(2) = [1000.0_wp, 10.0_wp]
   !> A difference of which no more is left beside the others says nothing new.
   real(wp), parameter :: least_new = 1.0e-8_wp
+  !> Values that differ by less than this share of them do not.
+  real(wp), parameter :: least_difference = 1.0e-6_wp
 
   type :: turns_t
     !> Values that the turn begins with, `nstress` of stress, the rest of conductance, and g - x of the turn before.
@@ -96,6 +98,45 @@ contains
       call hand_over(exchange%x(n + 1:), equations%drivers)
     end associate
   end subroutine hand_over_values
+
+  !> What the trial state has is handed over, for a comparison; it differs from what was. Without such drivers nothing.
+  subroutine hand_over_reached(scene, solution, equations, exchange, differ)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(equations_t), intent(inout) :: equations
+    type(turns_t), intent(in) :: exchange
+    logical, intent(out) :: differ
+    type(turns_t) :: reached
+
+    differ = .false.
+    if (.not. allocated(exchange%x)) return
+    reached%nstress = exchange%nstress
+    allocate (reached%x, mold=exchange%x)
+    call values_of_solution(scene, solution, equations, exchange, reached%x)
+    differ = length_of(reached%x - exchange%x) > least_difference*length_of(reached%x)
+    if (differ) call hand_over_values(reached, equations)
+  end subroutine hand_over_reached
+
+  !> What the turn was made with is handed over again; where contact knew nothing of a point, as heat has found it then, without a
+  !> pressure.
+  subroutine hand_over_again(scene, solution, equations, exchange)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(equations_t), intent(inout) :: equations
+    type(turns_t), intent(in) :: exchange
+    type(turns_t) :: again
+    real(wp), allocatable :: unpressed(:)
+
+    if (.not. allocated(exchange%x)) return
+    again%nstress = exchange%nstress
+    again%x = exchange%x
+    associate (n => exchange%nstress)
+      allocate (unpressed(size(again%x) - n))
+      call conductance_of_solution(scene, solution, equations%drivers, unpressed, unpressed=.true.)
+      where (.not. again%x(n + 1:) > not_handed) again%x(n + 1:) = unpressed
+    end associate
+    call hand_over_values(again, equations)
+  end subroutine hand_over_again
 
   !> After a turn: what is handed over next. The change of the turn is weighed, with that of the values, to be comparable
   !> with what the solves find their unknowns to. Where nothing is handed over nothing changes.

@@ -28,6 +28,7 @@ module heat_error
   use evaluation, only: evaluate, measure_error
   use external_loads, only: external_forces
   use fields, only: find_field
+  use heat_error_start, only: content_of
   use kinds, only: wp
   use kinetics_error, only: add_by_temperature, content_beside, knows_phases, path_piece_t
   use path_record, only: state_error_t
@@ -36,7 +37,7 @@ module heat_error
   use step_outcome, only: outcome_t
   implicit none
   private
-  public :: diagonal, estimate_error, flows, weight
+  public :: diagonal, estimate_error, flows, flows_of, leave, take, weight
 
   !> D and W of TR-BDF2.
   real(wp), parameter :: diagonal = 1 - 1/sqrt(2.0_wp), weight = sqrt(2.0_wp)/4
@@ -91,6 +92,11 @@ contains
     call take(equations, find_field(scene%fields, 'temperature'), solution%heat%content_error, heat)
     call take(equations, find_field(scene%fields, 'die_temperature'), solution%heat%die_error, heat)
     call take(equations, find_field(scene%fields, 'temperature'), solution%heat%temperature_error, before)
+    ! on a new mesh: temperatures alone were carried to it
+    if (any(abs(before) > 0) .and. .not. any(abs(solution%heat%content_error) > 0)) then
+      call content_of(scene, equations, solution, dt, outcome%du, before, small, taken)
+      heat = heat + taken
+    end if
     if (knows_phases(whole)) then
       call content_beside(scene, equations, solution, dt, outcome%du, before, small, whole, taken, phases, by_end, touched, follows)
       temperatures = 0

@@ -26,7 +26,7 @@ module heat_stages
   use torch_steps, only: torch_step
   implicit none
   private
-  public :: evaluation_t, is_heat_alone, judge, keep_evaluation, return_to, solve_heat
+  public :: evaluation_t, in_two_stages, is_heat_alone, judge, keep_evaluation, return_to, solve_heat
 
   !> The weights of the stages, the shares of the step at which they end, and the weights of the error.
   real(wp), parameter :: weights(0:2) = [weight, weight, diagonal]
@@ -270,7 +270,7 @@ contains
     logical :: two_stages
 
     if (.not. (outcome%heat%estimated .and. scene%strategy%time_tolerance > 0)) return
-    two_stages = scene%strategy%scheme == scheme_tr_bdf2 .and. solution%last_step > 0 .and. .not. outcome%heat%fell_back
+    two_stages = in_two_stages(scene, solution, outcome)
     order = merge(2.0_wp, 1.0_wp, two_stages)
     factor = huge(factor)
     if (outcome%heat%error > 0) factor = safety*(scene%strategy%time_tolerance/outcome%heat%error)**(1/(order + 1))
@@ -288,6 +288,16 @@ contains
       outcome%heat%growth = 1
     end if
   end subroutine judge
+
+  !> The step was one of TR-BDF2.
+  pure function in_two_stages(scene, solution, outcome) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution   !! at its start
+    type(outcome_t), intent(in) :: outcome
+    logical :: yes
+
+    yes = scene%strategy%scheme == scheme_tr_bdf2 .and. solution%last_step > 0 .and. .not. outcome%heat%fell_back
+  end function in_two_stages
 
   !> Iterations of an earlier stage, or of an attempt that was dropped, count too.
   subroutine add_iterations(earlier, outcome)

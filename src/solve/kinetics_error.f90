@@ -25,7 +25,8 @@ module kinetics_error
   use step_instants, only: make_instant
   implicit none
   private
-  public :: add_by_temperature, content_beside, content_error_of_path, keep_piece, knows_phases, path_piece_t
+  public :: add_by_temperature, content_beside, content_error_of_path, has_heat_law, keep_piece, knows_phases, of_groups, &
+            path_piece_t
 
   !> A piece of a step.
   type :: path_piece_t

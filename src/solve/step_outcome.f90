@@ -31,6 +31,9 @@ module step_outcome
     logical :: passes_itself = .false.
     !> It has thinned to nothing where it does.
     logical :: thins_out = .false.
+    !> Share of the heat through contact that is another by the contact that it leads to, where turns of the solves do not agree on
+    !> it (step_solves).
+    real(wp) :: contact_lag = 0.0_wp
     !> Balance of heat in time.
     type(heat_step_t) :: heat
     !> Path within the step.

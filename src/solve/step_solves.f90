@@ -5,6 +5,7 @@
 !> nothing changes any more is the result of the monolithic solve. What drives heat is handed over by exchange_in_turns.
 module step_solves
   use damping, only: prepare_damping
+  use contact_lag, only: add_lag, lag_t, lags, measure_lag
   use equations, only: equations_t
   use fields, only: displacement_field
   use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
@@ -18,7 +19,7 @@ module step_solves
   use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t
-  use strategy, only: coupling_converged
+  use strategy, only: coupling_converged, coupling_once
   use text, only: to_text
   implicit none
   private
@@ -26,6 +27,10 @@ module step_solves
 
   !> More turns than this do not converge: the step is too long.
   integer, parameter :: most_turns = 50
+  !> Once in turns is not enough where more than this share of the heat through contact is another by the contact that it leads to;
+  !> turns then go on until no more than the second share is, and end in any case after so many.
+  real(wp), parameter :: large_lag = 0.1_wp, little_lag = 0.02_wp
+  integer, parameter :: most_turns_of_contact = 30
 
 contains
 
@@ -42,8 +47,13 @@ contains
 
     solved = corrections_of_motion(equations)
     call prepare_damping(scene, solution, dt, equations)
-    call take_turns(scene, equations, solution, dt, exchange, outcome)
+    call take_turns(scene, equations, solution, dt, most_turns_of_contact, exchange, outcome)
     call end_exchange(equations, exchange)
+    if (.not. outcome%converged .and. exchange%n > 0 .and. scene%strategy%coupling == coupling_once) then
+      ! turns that would have heat and contact agree lead to none: the first alone
+      call take_turns(scene, equations, solution, dt, 1, exchange, outcome)
+      call end_exchange(equations, exchange)
+    end if
     call judge_contours(scene, equations, solution, outcome)
     call judge_path(scene, equations, solution, dt, corrections_of_motion(equations) > solved, outcome)
   end subroutine solve_fields
@@ -86,15 +96,17 @@ contains
   end function corrections_of_motion
 
   !> Each solve in its turn.
-  subroutine take_turns(scene, equations, solution, dt, exchange, outcome)
+  subroutine take_turns(scene, equations, solution, dt, most, exchange, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
-    real(wp), intent(in) :: dt   !! [time]
+    real(wp), intent(in) :: dt     !! [time]
+    integer, intent(in) :: most    !! turns, where temperatures are found once, and first
     type(turns_t), intent(out) :: exchange
     type(outcome_t), intent(out) :: outcome
     type(outcome_t) :: own
     real(wp) :: motion(equations%dofs%ndof), change
+    logical :: once, ends
     integer :: s, turn
 
     if (size(equations%solves) == 1) then
@@ -111,7 +123,8 @@ contains
     do s = 1, size(solution%groups)
       solution%groups(s)%trial = solution%groups(s)%committed
     end do
-    if (scene%strategy%coupling == coupling_converged) call begin_exchange(scene, solution, equations, exchange)
+    once = scene%strategy%coupling == coupling_once
+    if (.not. once .or. lags(equations)) call begin_exchange(scene, solution, equations, exchange, contact_alone=once)
     motion = 0
     if (solution%last_step > 0) call proportion(equations%dofs, solution%fields, dt/solution%last_step, motion)
     do turn = 1, most_turns
@@ -129,13 +142,41 @@ contains
         motion = merge(own%du, motion, equations%solves(s)%is_own)
       end do
       outcome%du = motion
+      if (once) then
+        call compare_contact(scene, equations, solution, dt, turn, turn == most, exchange, outcome, ends)
+        if (ends) return
+      end if
       call advance_exchange(scene, solution, equations, exchange, change)
-      if (scene%strategy%coupling /= coupling_converged .or. change <= scene%strategy%displacement_norm) return
+      if (.not. once .and. change <= scene%strategy%displacement_norm) return
     end do
     outcome%converged = .false.
     outcome%reason = 'the fields do not agree after '//to_text(most_turns)//' turns (they change by '//to_text(change, 3) &
                      //'); SOLVE MONOLITHIC finds them together'
   end subroutine take_turns
+
+  !> Where temperatures are found once, and first: the turn was the last one, unless heat through contact is quite another by the
+  !> contact that it leads to. Otherwise what it errs is added to the error of the step, and listed where it is large still.
+  subroutine compare_contact(scene, equations, solution, dt, turn, is_last, exchange, outcome, ends)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt   !! [time]
+    integer, intent(in) :: turn
+    logical, intent(in) :: is_last
+    type(turns_t), intent(in) :: exchange
+    type(outcome_t), intent(inout) :: outcome
+    logical, intent(out) :: ends
+    type(lag_t) :: lag
+
+    ends = .not. lags(equations)
+    if (ends) return
+    call measure_lag(scene, equations, solution, dt, exchange, outcome, lag)
+    ends = lag%share <= merge(large_lag, little_lag, turn == 1)
+    if (.not. ends .and. is_last) outcome%contact_lag = lag%share
+    ends = ends .or. is_last
+    if (.not. ends) return
+    call add_lag(scene, equations, solution, dt, lag, outcome)
+  end subroutine compare_contact
 
   !> Change of the motion of the own unknowns over the motion.
   pure function relative_change(equations, before, now) result(change)

@@ -12,6 +12,7 @@ usage: run_schemes.py [-v] [-k]
 - `carried`: the estimate of what all steps have left at the end is half to twice the error of the run, by both schemes: with numbers by
   temperature, latent heat, motion and after a shock.
 - `dies`: of a slab and a die with heat of its own it is 0.9 to 1.15 times the error against the closed form.
+- `meshes`: over two new meshes it is 0.8 to 1.25 times the error against the closed form, and dies away after them.
 - `bounds`: a body of Biot number 1000 on a coarse mesh: with BILINEAR no temperature is outside at any step, TR-BDF2 falls back to
   implicit Euler and says how often; with eight temperatures an element the steps outside are counted. On skew and on flat elements, with
   numbers by temperature, every scheme makes steps again, in the end without flows against the fall of the temperature: none is outside.
@@ -30,10 +31,12 @@ import sys
 
 sys.dont_write_bytecode = True
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), "patch")]
+sys.path[:0] = [HERE] + [os.path.join(os.path.dirname(HERE), folder) for folder in ("patch", "runs", "cycle")]
 from patch_support import LAGAMINE, LONGEST_RUN, Checks, Run, np  # noqa: E402
 from run_exchange import HEAD, TIGHT, wall  # noqa: E402
 from run_heat import temperatures  # noqa: E402
+from remeshed import cycle, tries  # noqa: E402
+from support import DONE, history, said, write  # noqa: E402
 
 
 def checks_of(run):
@@ -321,6 +324,40 @@ def resume(checks):
     checks.that(checks_of(run) == before, "resume: the same checks", checks_of(run))
 
 
+MESHES = """TITLE  A plate of good conductivity that cools, over new meshes
+STATE  {state}
+KINEM  SMALL
+BLOCK  plate PL8TM 4 m BILINEAR
+   0. 0.   20. 0.   20. 5.   0. 5.
+   5 1.   2 1.
+LAW    m HEAT
+   1.E6 4.
+START  T 800.
+CONVE  plate 3 H 0.5 TS 20.
+STRAT  2. 1.E-6 2.   9 3
+NORMS  FORCE 1.E-10 DISPL 1.E-10
+STOP   {stop}
+PROBE  t NODE T 0. 0.
+REMSH
+   TIMES 20. 30.
+END
+"""
+
+
+def meshes(checks):
+    """20 + 780 exp(-H t/(RHOC 5)), shortly after new meshes and when all has cooled."""
+    for state, stop in (("PLSTN", 40), ("AXISYM", 40), ("PLSTN", 300)):
+        name = f"meshes-{state}-{stop}"
+        deck, out = write(os.path.join(checks.folder, name + ".lag"), MESHES.format(state=state, stop=stop)), os.path.join(checks.folder, name)
+        result = cycle(deck, out)
+        if not checks.that(result.returncode == DONE and [row["accepted"] for row in tries(out)].count("y") == 2, f"{name}: two new meshes", said(result)):
+            continue
+        true = abs(history(out)["t"][-1] - 20 - 780*math.exp(-0.5*stop/20))
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            told = json.load(file)["accuracy"]["heat"]["end"]
+        checks.that(0.8 < told/true < 1.25, f"{name}: what errors before them have left", (told, true))
+
+
 def main():
     """All cases."""
     checks = Checks()
@@ -329,6 +366,7 @@ def main():
     error(checks)
     carried(checks)
     dies(checks)
+    meshes(checks)
     bounds(checks)
     bounds_of_any(checks)
     latent(checks)

@@ -6,6 +6,7 @@ usage: run_cuts.py [-v] [-k] [--seed N]
 - `flash`: a disc pressed without friction, its rim cut off, pressed on. The volume removed is pi (R^2 - c^2) h, with R and h where nodes are;
   what is left keeps its plastic strain, which is the same everywhere, and the next stroke bears the force of a disc of radius c.
 - `heat`: a block of 25 in thickness whose temperature rises in proportion to x, cut along an inclined line: the volume, and the heat that is left, which closed forms give.
+- `shaved`: as `heat`, less than a thousandth of the volume: a mean of the whole is none of what is left.
 - `punch`: a blank without hardening, punched through. The slug's volume is that of the cut; the force at the cut is near that of shear along
   the web, 2 pi r w k, between one time it (nothing but shear) and twice (pressed together as well).
 - `through`: punches of two edge radii go through the blank; the slug's volume is that under the punch, and what the cut leaves is no lip.
@@ -243,6 +244,23 @@ def warm(checks):
     checks.that(abs(summary(out)["checks"]["heat_imbalance"]) < 1e-6, "heat: balance", summary(out)["checks"]["heat_imbalance"])
 
 
+def shaved(checks):
+    """A corner of the hot side: what is left keeps its temperatures, and is no less hot for it."""
+    deck = write(os.path.join(checks.folder, "shaved.lag"), HEAT.replace("TRIM   block 8. -1. 4. 7.", "TRIM   block 9.7 6. 10. 5.7"))
+    out = checks.path("shaved")
+    result = cycle(deck, out, "--quiet")
+    if not checks.that(result.returncode == DONE, "shaved: done", result.stdout + result.stderr):
+        return
+    told = summary(out)["cuts"][0]["volume_removed"]
+    checks.that(abs(told / (25 * 0.3**2 / 2) - 1) < 1e-6, "shaved: volume removed", told)
+    import h5py   # with_h5py has found a Python that has it
+    with h5py.File(os.path.join(out, "shaved.g03.start.h5"), "r") as file:
+        x = file["mesh/coordinates"][()]
+        error = abs(file["fields/temperature/value"][()][:, 0] - (20 + 10 * x[:, 0])).max()
+    # with the mean of the whole it would be 0.1
+    checks.that(error < 1e-6 * 100, "shaved: the temperature of what is left", error)
+
+
 def punched(checks):
     """Volume and force of a slug."""
     out = checks.path("punch")
@@ -319,6 +337,7 @@ def refused(checks):
     """Lines that cut nothing, end within, or leave two pieces."""
     for name, cut, phrase in (
             ("beside", "9. -1. 9. 7. KEEP 0. 0.", "does not cross the body"),
+            ("along", "5.99 -1. 5.99 7. KEEP 0. 0.", "is along the side of the body, so that nothing is cut"),
             ("within", "3. -1. 3. 1. KEEP 0. 0.", "begins or ends within the body"),
             ("pieces", "-1. 4. 7. 4. KEEP 1. 5.", "leaves 2 pieces of the body")):
         deck = write(os.path.join(checks.folder, f"{name}.lag"), FORK.replace("CUT", "TRIM   fork " + cut))
@@ -346,6 +365,7 @@ def main():
     deck = write(os.path.join(checks.folder, "deck.lag"), FLASH.replace("CUT\n", CUT + "\n"))
     whole = pressed(checks, deck)
     warm(checks)
+    shaved(checks)
     punched(checks)
     punched_through(checks)
     corner_cut(checks)

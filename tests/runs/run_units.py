@@ -3,7 +3,8 @@
 same steps and iterations up to 60 % and gives the same forces, to 1e-9.
 
 usage: run_units.py [-v] [-k]       -v prints every check, -k keeps the results
-`section`: a bar that is bent across between sections that are free, of thickness 1 in whatever unit: what is found does not depend on it.
+`section`: a bar that is bent across between sections that are free, of thickness 1 in whatever unit: what is found does not depend on it,
+nor which of several points that are as near PROBE takes.
 The `binary` units are powers of two of mm, MPa and s: there even the round-off is the same, so the whole history must be, bit by bit.
 In the others the last bits differ; that they stay last bits while the side folds onto the die shows that no decision hangs on them.
 """
@@ -70,8 +71,12 @@ FIXED  bar 4 XY
 STRAT  {T:0.1} {T:1e-5} {T:0.1}   5 3
 STOP   {T:1.5}
 NORMS  PATH 0 RATE 0
-END
+{probes}END
 """
+
+
+# Between elements, as far from the points of one as of the other.
+BETWEEN = [(x, y) for x in (5.0, 10.0, 15.0) for y in (1.2, 5.0, 8.9)]
 
 
 class Scaled:
@@ -101,7 +106,8 @@ def section(checks):
     for name in ("mm-N-MPa", "m-N-Pa", "in-lbf-psi"):
         length, stress, time = UNITS[name]
         where = checks.path(f"section-{name}")
-        deck = write(where + ".lag", BAR.format(name=name, L=Scaled(length), S=Scaled(stress), T=Scaled(time)))
+        probes = "".join(f"PROBE p{k} POINT mises {x / length!r} {y / length!r}\n" for k, (x, y) in enumerate(BETWEEN))
+        deck = write(where + ".lag", BAR.format(name=name, L=Scaled(length), S=Scaled(stress), T=Scaled(time), probes=probes))
         result = run([deck, "--out", where, "--threads", "1"])
         if checks.that(result.returncode == DONE, f"section in {name}: done", said(result)):
             runs[name] = history(where)
@@ -110,7 +116,8 @@ def section(checks):
     one = runs.pop("mm-N-MPa")
     for name, two in runs.items():
         checks.that(one["iterations"] == two["iterations"], f"section in {name}: the same iterations", (one["iterations"], two["iterations"]))
-        for column, unit in (("section_strain", 1.0), ("section_curvature_x", 1/UNITS[name][0])):
+        columns = [("section_strain", 1.0), ("section_curvature_x", 1/UNITS[name][0])]
+        for column, unit in columns + [(f"p{k}", UNITS[name][1]) for k in range(len(BETWEEN))]:
             worst = max(abs(a - b*unit) for a, b in zip(one[column], two[column]))/max(abs(a) for a in one[column])
             checks.that(worst <= TOLERANCE, f"section in {name}: {column}", f"{worst:.1e} apart")
 
