@@ -39,7 +39,7 @@ contains
     real(wp) :: percent
     integer :: k, card
 
-    call only_card(deck, 'ACCURACY', .false., diagnostics, card)
+    call only_card(deck, 'ACCURACY', diagnostics, card)
     if (card == 0) return
     call cursor%open(deck%cards(card), diagnostics)
     call cursor%real('the largest error, in percent', percent, lower=0.0_wp, upper=hundred, strict_lower=.true., &

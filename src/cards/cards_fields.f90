@@ -204,7 +204,7 @@ contains
     type(string_t) :: words(size(coupling_names))
     integer :: k, c
 
-    call only_card(deck, 'SOLVE', .false., diagnostics, k)
+    call only_card(deck, 'SOLVE', diagnostics, k)
     if (k == 0) return
     do c = 1, size(words)
       words(c)%s = trim(coupling_names(c))

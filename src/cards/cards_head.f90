@@ -4,7 +4,7 @@ module cards_head
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use scene_draft, only: close_card, draft_t, only_card
-  use text, only: string_t
+  use text, only: join, string_t
   implicit none
   private
   public :: read_title, read_kinematics
@@ -19,7 +19,7 @@ contains
     integer :: k
 
     draft%scene%title = ''
-    call only_card(deck, 'TITLE', .true., diagnostics, k)
+    call only_card(deck, 'TITLE', diagnostics, k, 'a title')
     if (k == 0) return
     call cursor%open(deck%cards(k), diagnostics)
     call cursor%text('a title', draft%scene%title)
@@ -35,12 +35,12 @@ contains
     integer :: k, i
 
     draft%scene%kinematics = ''
-    call only_card(deck, 'KINEM', .true., diagnostics, k)
-    if (k == 0) return
     allocate (names(size(draft%kinematics)))
     do i = 1, size(names)
       names(i)%s = draft%kinematics(i)%name
     end do
+    call only_card(deck, 'KINEM', diagnostics, k, 'the name of kinematics, one of '''//join(names, ''' ''')//'''')
+    if (k == 0) return
     call cursor%open(deck%cards(k), diagnostics)
     call cursor%name('the name of kinematics', names, i)
     if (i > 0) then

@@ -268,7 +268,7 @@ contains
     type(string_t), allocatable :: words(:)
     integer :: card, f, k
 
-    call only_card(deck, 'THETA', .false., diagnostics, card)
+    call only_card(deck, 'THETA', diagnostics, card)
     if (card == 0) return
     call cursor%open(deck%cards(card), diagnostics)
     associate (strategy => draft%scene%strategy)

@@ -30,7 +30,7 @@ contains
     type(multiplier_t) :: multiplier
     integer :: k
 
-    call only_card(deck, 'LOADF', .false., diagnostics, k)
+    call only_card(deck, 'LOADF', diagnostics, k)
     if (k == 0) return
     call cursor%open(deck%cards(k), diagnostics)
     call draft%multipliers%define(cursor, 'the name of the multiplier', 'LOADF', size(draft%scene%multipliers) + 1, diagnostics, &
@@ -53,7 +53,7 @@ contains
     integer :: card, k
 
     if (draft%scene%load_factor%multiplier == 0) return
-    call only_card(deck, 'LOADF', .false., diagnostics, card)
+    call only_card(deck, 'LOADF', diagnostics, card)
     call words_of('WORK', work)
     call cursor%open(deck%cards(card), diagnostics)
     call cursor%word('the name of the multiplier', name)

@@ -36,13 +36,13 @@ contains
     integer :: k
 
     allocate (draft%scene%remesh%times(0), draft%scene%remesh%strokes(0), draft%scene%remesher%windows(0))
-    call only_card(deck, 'ESTIM', .false., diagnostics, k)
+    call only_card(deck, 'ESTIM', diagnostics, k)
     if (k > 0) then
       call cursor%open(deck%cards(k), diagnostics)
       draft%scene%remesh%estimate = .true.
       call close_card(draft, cursor, deck%cards(k))
     end if
-    call only_card(deck, 'REMSH', .false., diagnostics, k)
+    call only_card(deck, 'REMSH', diagnostics, k)
     if (k > 0) then
       call cursor%open(deck%cards(k), diagnostics)
       draft%scene%remesh%on = .true.

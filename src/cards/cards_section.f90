@@ -7,7 +7,7 @@ module cards_section
   use scene, only: axisymmetric, generalised_plane_strain, plane_state_names
   use scene_draft, only: close_card, draft_t, head_location, only_card, words_of
   use sections, only: section_drive_t, section_forced, section_moved, section_names
-  use text, only: string_t
+  use text, only: join, string_t
   implicit none
   private
   public :: read_state, read_section
@@ -24,12 +24,12 @@ contains
     integer :: k, i
 
     draft%scene%section = [1.0_wp, 0.0_wp, 0.0_wp]
-    call only_card(deck, 'STATE', .true., diagnostics, k)
-    if (k == 0) return
     allocate (names(size(plane_state_names)))
     do i = 1, size(names)
       names(i)%s = trim(plane_state_names(i))
     end do
+    call only_card(deck, 'STATE', diagnostics, k, 'a plane state, one of '''//join(names, ''' ''')//'''')
+    if (k == 0) return
     call cursor%open(deck%cards(k), diagnostics)
     call cursor%name('a plane state', names, draft%scene%plane_state)
     if (draft%scene%plane_state == axisymmetric) then
@@ -68,7 +68,7 @@ contains
       call close_card(draft, cursor, deck%cards(i))
     end do
     if (draft%scene%plane_state /= generalised_plane_strain) return
-    call only_card(deck, 'STATE', .true., diagnostics, i)
+    call only_card(deck, 'STATE', diagnostics, i)
     do c = 1, 3
       if (is_given(c)) cycle
       call diagnostics%add(head_location(deck%cards(i)), 'STATE', 'GPLSTN wants a card ''SECTN '//trim(section_names(c)) &

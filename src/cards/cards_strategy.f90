@@ -24,19 +24,20 @@ contains
 
     associate (strategy => draft%scene%strategy)
       allocate (strategy%save_times(0))
-      call only_card(deck, 'STRAT', .true., diagnostics, k)
+      call only_card(deck, 'STRAT', diagnostics, k, &
+                     'the first, the least and the largest step [time], NOPTI and NALPHA')
       if (k > 0) then
         call cursor%open(deck%cards(k), diagnostics)
         call read_steps(cursor, strategy)
         call close_card(draft, cursor, deck%cards(k))
       end if
-      call only_card(deck, 'NORMS', .false., diagnostics, k)
+      call only_card(deck, 'NORMS', diagnostics, k)
       if (k > 0) then
         call cursor%open(deck%cards(k), diagnostics)
         call read_norms(cursor, strategy)
         call close_card(draft, cursor, deck%cards(k))
       end if
-      call only_card(deck, 'SOLVR', .false., diagnostics, k)
+      call only_card(deck, 'SOLVR', diagnostics, k)
       if (k > 0) then
         call cursor%open(deck%cards(k), diagnostics)
         call read_linear_solver(cursor, strategy)
@@ -44,7 +45,7 @@ contains
       end if
       call read_end(deck, draft, diagnostics)
       call read_savings(deck, draft, diagnostics)
-      call only_card(deck, 'CKPT', .false., diagnostics, k)
+      call only_card(deck, 'CKPT', diagnostics, k)
       if (k > 0) then
         call cursor%open(deck%cards(k), diagnostics)
         call cursor%integer('the number of steps between checkpoints', strategy%checkpoint_every, lower=1)
@@ -140,7 +141,7 @@ contains
     integer :: k
 
     associate (strategy => draft%scene%strategy)
-      call only_card(deck, 'STOP', .false., diagnostics, k)
+      call only_card(deck, 'STOP', diagnostics, k)
       if (k > 0) then
         call cursor%open(deck%cards(k), diagnostics)
         call cursor%real('the time at the end', strategy%end_time, lower=0.0_wp, strict_lower=.true., unit='time')

@@ -40,7 +40,7 @@ contains
     path%title = draft%scene%title
     path%kinematics_id = draft%scene%kinematics_id
     allocate (path%ramps(0))
-    call only_card(deck, 'PATH', .true., diagnostics, k)
+    call only_card(deck, 'PATH', diagnostics, k, 'the name of a law, and rows with the way of its stress or strain')
     if (k > 0) then
       call cursor%open(deck%cards(k), diagnostics)
       call read_path(cursor, draft, diagnostics, path)

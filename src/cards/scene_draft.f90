@@ -60,13 +60,13 @@ contains
     allocate (draft%beginning(0), draft%sleepers(0))
   end subroutine start_draft
 
-  !> The one card with this keyword, 0 when there is none; a second one is refused, and none where one is `required`.
-  subroutine only_card(deck, keyword, required, diagnostics, k)
+  !> The one card with this keyword, 0 when there is none. A second one is refused, and none where it says what is `expected` on it.
+  subroutine only_card(deck, keyword, diagnostics, k, expected)
     type(deck_t), intent(inout) :: deck
     character(len=*), intent(in) :: keyword
-    logical, intent(in) :: required
     type(diagnostics_t), intent(inout) :: diagnostics
     integer, intent(out) :: k
+    character(len=*), intent(in), optional :: expected
     type(location_t) :: where
     integer :: i
 
@@ -81,9 +81,9 @@ contains
                              //diagnostics%place(head_location(deck%cards(k))))
       end if
     end do
-    if (k > 0 .or. .not. required) return
+    if (k > 0 .or. .not. present(expected)) return
     call diagnostics%register(deck%path, where%file)
-    call diagnostics%add(where, keyword, 'the deck has no such card')
+    call diagnostics%add(where, keyword, 'the deck has no such card: expected '//expected)
   end subroutine only_card
 
   !> Refuse what is left on a card. When it has a mistake, the names on it count as used all the same.

@@ -10,7 +10,7 @@ module deck_cursor
   use card_position, only: card_position_t
   use deck_field, only: deck_field_t
   use kinds, only: eps, wp
-  use text, only: nearest_word, string_t, to_text
+  use text, only: join, nearest_word, string_t, to_text
   implicit none
   private
   public :: cursor_t
@@ -80,7 +80,6 @@ contains
     type(deck_field_t), intent(in) :: field
     type(string_t), intent(in) :: names(:)   !! (n)
     character(len=:), allocatable :: words
-    integer :: i
 
     words = nearest_word(field%text, names)
     if (field%numeric .and. words == field%text) then
@@ -90,10 +89,7 @@ contains
     else if (size(names) == 0) then
       words = '; there is none yet'
     else if (size(names) <= most_listed .and. index(what, 'one of ') /= 1) then
-      words = '; known:'
-      do i = 1, size(names)
-        words = words//' '''//names(i)%s//''''
-      end do
+      words = '; known: '''//join(names, ''' ''')//''''
     end if
   end function proposal
 
