@@ -13,8 +13,9 @@
 module contact_lag
   use contact_conductance, only: conductance_count
   use corrections, only: solve_correction
-  use equations, only: equations_t
-  use evaluation, only: measure_error
+  use elem_api, only: report_t
+  use equations, only: equations_t, stage_t
+  use evaluation, only: evaluate, measure_error
   use exchange_in_turns, only: hand_over_again, hand_over_reached, turns_t
   use fields, only: find_field
   use heat_error, only: diagonal, flows, flows_of, leave, take
@@ -122,7 +123,9 @@ contains
     type(evaluation_t) :: kept
     type(state_error_t) :: none(size(scene%groups))
     real(wp), dimension(equations%dofs%ndof) :: heat, temperatures, content, all
+    type(report_t) :: report
     real(wp) :: length, error, unused
+    logical :: at_hand
     integer :: now, f, d
 
     if (.not. (outcome%heat%estimated .and. lag%share > 0)) return
@@ -134,7 +137,14 @@ contains
     associate (two_stages => in_two_stages(scene, solution, outcome))
       length = merge(diagonal, 1.0_wp, two_stages)*dt
       heat = merge(dt*lag%rates, 0.0_wp, equations%solves(equations%now)%equation > 0)
-      call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=.true.)
+      at_hand = equations%solves(equations%now)%analysed
+      ! other pairs of bodies as the motion was found: the matrix has another pattern, and no factors yet
+      if (.not. at_hand) then
+        if (two_stages) equations%stage = stage_t(share=diagonal)
+        call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
+        equations%stage = stage_t()
+      end if
+      call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=at_hand)
       if (.not. allocated(outcome%error)) then
         heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, lag%flows, temperatures, &
                                       merge(0.0_wp, dt, two_stages), none)
