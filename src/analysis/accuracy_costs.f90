@@ -3,8 +3,8 @@ module accuracy_costs
   use accuracy_rules, only: fineness_t
   use cost_file, only: ntask
   use kinds, only: wp
-  use timers, only: ledger_t
   use pilot_differences, only: sample_t, shortest_steps
+  use timers, only: ledger_t
   implicit none
   private
   public :: cost_of_elements, elements_of, expected_seconds, seconds_by_task

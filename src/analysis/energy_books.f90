@@ -10,8 +10,8 @@
 module energy_books
   use contact_contour, only: sample_depth
   use dies, only: present_die
-  use elem_body_springs, only: springs_of_body
   use elem_api, only: totals_t
+  use elem_body_springs, only: springs_of_body
   use element_loop, only: group_geometry
   use energy_round_off, only: operations, stiffest
   use equations, only: equations_t

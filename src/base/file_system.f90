@@ -3,6 +3,7 @@ module file_system
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   use c_errors, only: reason
   use errors, only: error_t, exit_machine, fail
+  use file_descriptors, only: c_close, c_open, read_only
   use file_kinds, only: file_kind, nothing, refuse_to_replace
   use file_paths, only: directory_of
   implicit none
@@ -35,24 +36,11 @@ module file_system
       integer(c_int) :: status
     end function c_unlink
 
-    function c_open(path, flags) bind(c, name='open') result(descriptor)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: flags
-      integer(c_int) :: descriptor
-    end function c_open
-
     function c_fsync(descriptor) bind(c, name='fsync') result(status)
       import :: c_int
       integer(c_int), value :: descriptor
       integer(c_int) :: status
     end function c_fsync
-
-    function c_close(descriptor) bind(c, name='close') result(status)
-      import :: c_int
-      integer(c_int), value :: descriptor
-      integer(c_int) :: status
-    end function c_close
   end interface
 
 contains
@@ -127,7 +115,6 @@ contains
   subroutine flush_to_disk(path, error)
     character(len=*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
-    integer(c_int), parameter :: read_only = 0
     integer(c_int) :: descriptor, status, ignored
     character(len=:), allocatable :: why
 

@@ -10,6 +10,7 @@ module folder_lock
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
   use child_process, only: nap, own_process
   use errors, only: error_t, exit_machine, fail
+  use file_descriptors, only: c_close
   use file_kinds, only: refuse_to_replace, same_file
   use kinds, only: i8, wp
   use system, only: from_environment, join_path, last_failure, reason, remove_file
@@ -47,12 +48,6 @@ module folder_lock
       integer(c_int), value :: flags, permissions
       integer(c_int) :: descriptor
     end function c_open
-
-    function c_close(descriptor) bind(c, name='close') result(status)
-      import :: c_int
-      integer(c_int), value :: descriptor
-      integer(c_int) :: status
-    end function c_close
 
     function c_flock(descriptor, operation) bind(c, name='flock') result(status)
       import :: c_int

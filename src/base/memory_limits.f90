@@ -8,6 +8,7 @@ module memory_limits
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_size_t
   use errors, only: error_t, exit_machine, fail
   use kinds, only: i8, wp
+  use proc_entries, only: bytes_in
   use standard_streams, only: print_error
   use text, only: to_text
   implicit none
@@ -84,7 +85,7 @@ contains
     left = huge(left)
     addresses = huge(addresses)
     by_what = 'by no limit'
-    call entry_of('/proc/meminfo', 'MemAvailable:', other)
+    call bytes_in('/proc/meminfo', 'MemAvailable', other)
     if (other >= 0) then
       left = other
       by_what = 'on this machine'
@@ -96,31 +97,9 @@ contains
       by_what = 'by the limit of the control group'
     end if
     if (c_getrlimit(address_space, limit) /= 0) return
-    call entry_of('/proc/self/status', 'VmSize:', used)
+    call bytes_in('/proc/self/status', 'VmSize', used)
     if (limit%soft >= 0 .and. used >= 0) addresses = max(real(limit%soft, wp) - used, 0.0_wp)
   end subroutine memory_left
-
-  !> A number of kilobytes after a word of one of the system's lists [bytes], -1 where it is not there.
-  subroutine entry_of(file, word, bytes)
-    character(len=*), intent(in) :: file, word
-    real(wp), intent(out) :: bytes
-    character(len=256) :: line
-    integer(i8) :: kilobytes
-    integer :: unit, status
-
-    bytes = -1
-    open (newunit=unit, file=file, status='old', action='read', iostat=status)
-    if (status /= 0) return
-    do
-      read (unit, '(a)', iostat=status) line
-      if (status /= 0) exit
-      if (index(line, word) /= 1) cycle
-      read (line(len(word) + 1:), *, iostat=status) kilobytes
-      if (status == 0) bytes = 1024*real(kilobytes, wp)
-      exit
-    end do
-    close (unit)
-  end subroutine entry_of
 
   !> The number that a file consists of, -1 where there is none.
   subroutine number_in(file, number)

@@ -3,6 +3,7 @@
 !> Read from /proc, which Linux has; where it is missing, or has another format, nothing is known and nothing is changed.
 module processors
   use kinds, only: i8, wp
+  use proc_entries, only: longest_line, value_in
   use system, only: cpu_seconds, wall_seconds
   implicit none
   private
@@ -18,9 +19,6 @@ module processors
     !> Processor time of this process [s], and when this was read [s].
     real(wp) :: own = 0.0_wp, instant = 0.0_wp
   end type processor_use_t
-
-  !> A line of flags, of a list of processors or of their times is no longer than this.
-  integer, parameter :: longest_line = 8192
 
 contains
 
@@ -96,30 +94,6 @@ contains
 
     call value_in('/proc/cpuinfo', 'flags', flags)
   end subroutine processor_flags
-
-  !> What follows the colon in the first line of a file that begins with `name`; '' where there is none.
-  subroutine value_in(file, name, value)
-    character(len=*), intent(in) :: file, name
-    character(len=:), allocatable, intent(out) :: value
-    character(len=longest_line) :: line
-    character(len=*), parameter :: blanks = ' '//achar(9)
-    integer :: unit, status, colon, start
-
-    value = ''
-    open (newunit=unit, file=file, status='old', action='read', iostat=status)
-    if (status /= 0) return
-    do
-      read (unit, '(a)', iostat=status) line
-      if (status /= 0) exit
-      colon = index(line, ':')
-      if (colon <= len(name) .or. line(:len(name)) /= name) cycle
-      if (verify(line(len(name) + 1:colon - 1), blanks) > 0) cycle
-      start = verify(line(colon + 1:), blanks)
-      if (start > 0) value = line(colon + start:len_trim(line))
-      exit
-    end do
-    close (unit)
-  end subroutine value_in
 
   !> Is a processor in a list such as 0-3,8?
   pure function is_in_list(list, number) result(found)

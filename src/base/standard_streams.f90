@@ -5,6 +5,7 @@
 module standard_streams
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_size_t
   use errors, only: error_t, exit_machine, fail
+  use file_descriptors, only: c_close, c_open, read_only
   use system, only: last_failure, reason, signals_to_errors
   use text, only: string_t
   implicit none
@@ -23,19 +24,6 @@ module standard_streams
       integer(c_size_t), value :: length
       integer(c_size_t) :: written
     end function c_write
-
-    function c_open(path, flags) bind(c, name='open') result(descriptor)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: flags
-      integer(c_int) :: descriptor
-    end function c_open
-
-    function c_close(descriptor) bind(c, name='close') result(status)
-      import :: c_int
-      integer(c_int), value :: descriptor
-      integer(c_int) :: status
-    end function c_close
   end interface
 
 contains
@@ -44,7 +32,6 @@ contains
   !> opened would have its number otherwise, and lines meant for the terminal would go into it; this way they are refused.
   !> The write that fails reports a reader that goes away.
   subroutine claim_standard_streams()
-    integer(c_int), parameter :: read_only = 0
     integer(c_int) :: descriptor, ignored
 
     do

@@ -7,12 +7,12 @@ module cards_remesh
   use element_fields, only: body_acts_on
   use fields, only: displacement_field
   use kinds, only: wp
-  use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, scaled_jacobian, stroke_t
   use own_mesh_sizes, only: complete_options
   use remesh_defaults, only: default_narrow => narrow, set_default_limits, set_default_sizes
   use remesher_options, only: has_contours
   use remesher_rows, only: make_sizes_finer, read_remesher_row, remesher_words
   use remesher_windows, only: read_window
+  use remeshing, only: aspect_ratio, jacobian_ratio, largest_angle, least_angle, middle_share, never, scaled_jacobian, stroke_t
   use scene_draft, only: close_card, draft_t, only_card, words_of
   use state_variables, only: name_of_ratio, state_variable, state_variable_t, total_components, transfer_scalar
   use text, only: string_t, to_text

@@ -14,8 +14,8 @@ module scene_reader
   use cards_laws, only: read_laws
   use cards_load_factor, only: name_load_factor, read_load_factor
   use cards_loads, only: read_loads, read_multipliers
-  use cards_pilots, only: read_pilots
   use cards_mesh, only: read_elements, read_nodes, read_side_sets
+  use cards_pilots, only: read_pilots
   use cards_probes, only: read_probes
   use cards_remesh, only: read_remesh
   use cards_section, only: read_section, read_state
@@ -36,8 +36,8 @@ module scene_reader
   use element_fields, only: declare_fields, list_body_elems
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
-  use patch_checks, only: settle_patches
   use own_mesh_sizes, only: measure_own_mesh
+  use patch_checks, only: settle_patches
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
   use remesher_options, only: has_contours

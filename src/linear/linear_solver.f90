@@ -2,7 +2,7 @@
 !> that comes again, to the last bit, are kept), residual of every solve checked and refined. A matrix for which the factors prove
 !> too poor, and those after it in the step, get the fallback of the solver, where it has one, and its fallback after that.
 module linear_solver
-  use errors, only: error_t, exit_no_convergence, fail
+  use errors, only: error_t, exit_bug, exit_no_convergence, fail
   use kinds, only: i8, wp
   use linear_api, only: factors_t, solver_row_t
   use linear_registry, only: list_solvers
@@ -162,7 +162,8 @@ contains
   end function same_bits
 
   !> Solve for one right-hand side with the present factors, refining while the residual is too large.
-  !> Factors that prove too poor are made again by the fallback, for the rest of the step.
+  !> Factors that prove too poor are made again by the fallback, for the rest of the step. It is a mistake of the program to ask for
+  !> a solution before the first matrix of an analysis.
   subroutine solve_linear(solver, pattern, rhs, x, error)
     type(linear_solver_t), intent(inout) :: solver
     class(matrix_pattern_t), intent(in) :: pattern
@@ -171,6 +172,10 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     x = 0
+    if (solver%made_by == 0) then
+      call fail(error, exit_bug, 'linear solver: a solution before the first matrix')
+      return
+    end if
     if (solver%sound) call refine(solver, pattern, rhs, x, error)
     if (allocated(error)) return
     do while (solver%now < size(solver%stages) .and. .not. (solver%sound .and. solver%residual <= linear_tolerance))

@@ -25,8 +25,8 @@ module kinetics_error
   use step_instants, only: make_instant
   implicit none
   private
-  public :: add_by_temperature, content_beside, content_error_of_path, has_heat_law, keep_piece, knows_phases, of_groups, &
-            path_piece_t
+  public :: add_by_temperature, content_beside, content_error_of_path, gather_heat, has_heat_law, keep_piece, knows_phases, &
+            path_piece_t, take_up
 
   !> A piece of a step.
   type :: path_piece_t
@@ -86,15 +86,13 @@ contains
     type(state_error_t), allocatable, intent(out) :: phases(:)   !! (ngroup); not allocated where no kinetics release heat
     type(drivers_t), allocatable :: drivers(:)
     type(instant_t) :: instant
-    type(report_t) :: report
-    real(wp) :: element_force(size(equations%buffers%force)), magnitude(size(du)), none(0, 0)
-    logical :: active(size(scene%groups))
+    real(wp) :: taken(size(equations%buffers%force)), bend
+    logical :: active(size(scene%groups)), done
     integer :: g
 
     heat = 0
     if (.not. allocated(whole%heat)) return
     active = has_kinetics(scene, equations)
-    element_force = equations%buffers%force
     do g = 1, size(active)
       if (active(g)) solution%groups(g)%committed = first%groups(g)%trial
     end do
@@ -102,20 +100,16 @@ contains
     call make_instant(scene, equations, solution, (1 - share)*dt, du - middle, .false., instant)
     instant%flow%n = 0
     instant%values = instant%values + middle
-    associate (solve => equations%solves(equations%now), buffers => equations%buffers)
-      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, solve%pattern, &
-                        instant, du - middle, none, solution, drivers, buffers, equations%timers, report)
-      if (report%status == block_done) then
-        buffers%force = merge(whole%heat - first%heat - instant%dt*buffers%force, 0.0_wp, of_groups(equations, active))
-        call gather_forces(solve%pattern, buffers, solve%is_own, heat, magnitude)
-        heat = heat/(1 - share**3 - (1 - share)**3)
-        allocate (phases(size(active)))
-        do g = 1, size(active)
-          if (active(g)) phases(g)%value = (solution%groups(g)%trial - whole%groups(g)%trial)/(1 - share**3 - (1 - share)**3)
-        end do
-      end if
-      buffers%force = element_force
-    end associate
+    call take_up(scene, equations, solution, active, instant, du - middle, taken, done, drivers)
+    if (done) then
+      bend = 1 - share**3 - (1 - share)**3
+      call gather_heat(equations, active, whole%heat - first%heat - instant%dt*taken, heat)
+      heat = heat/bend
+      allocate (phases(size(active)))
+      do g = 1, size(active)
+        if (active(g)) phases(g)%value = (solution%groups(g)%trial - whole%groups(g)%trial)/bend
+      end do
+    end if
     do g = 1, size(active)
       if (active(g)) solution%groups(g) = whole%groups(g)
     end do
@@ -148,9 +142,8 @@ contains
     logical, intent(out) :: done                   !! false where the step cannot be made from there
     type(group_state_t) :: kept(size(scene%groups))
     type(instant_t) :: instant
-    type(report_t) :: report
-    real(wp) :: element_force(size(equations%buffers%force)), magnitude(size(du)), none(0, 0)
-    logical :: holds(size(scene%groups)), active(size(scene%groups)), vary(size(scene%groups))
+    real(wp) :: taken(size(equations%buffers%force))
+    logical :: holds(size(scene%groups)), active(size(scene%groups))
     integer :: g, e, n
 
     heat = 0
@@ -178,20 +171,8 @@ contains
         end do
       end associate
     end do
-    vary = equations%drivers%vary
-    equations%drivers%vary = .false.
-    element_force = equations%buffers%force
-    associate (solve => equations%solves(equations%now), buffers => equations%buffers)
-      call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, solve%pattern, &
-                        instant, du - share*before, none, solution, equations%drivers, buffers, equations%timers, report)
-      done = report%status == block_done
-      if (done) then
-        buffers%force = merge((instant%dt*buffers%force - whole%heat)/share, 0.0_wp, of_groups(equations, active))
-        call gather_forces(solve%pattern, buffers, solve%is_own, heat, magnitude)
-      end if
-      buffers%force = element_force
-    end associate
-    equations%drivers%vary = vary
+    call take_up(scene, equations, solution, active, instant, du - share*before, taken, done)
+    if (done) call gather_heat(equations, active, (instant%dt*taken - whole%heat)/share, heat)
     do g = 1, size(holds)
       if (.not. active(g)) cycle
       if (holds(g)) then
@@ -205,6 +186,56 @@ contains
       call move_alloc(kept(g)%trial, solution%groups(g)%trial)
     end do
   end subroutine content_beside
+
+  !> What groups take up at an instant: element forces of all groups. Drivers do not vary, but stay as they are, or are others. What
+  !> the buffers hold is kept.
+  subroutine take_up(scene, equations, solution, active, instant, du, taken, done, drivers)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution   !! its trial states are those of the instant then
+    logical, intent(in) :: active(:)              !! (ngroup)
+    type(instant_t), intent(in) :: instant
+    real(wp), intent(in) :: du(:)                 !! (ndof) motion to there [unknown]
+    real(wp), intent(out) :: taken(:)             !! (nforce) [power]
+    logical, intent(out) :: done                  !! false where the step cannot be made so
+    type(drivers_t), intent(inout), optional :: drivers(:)   !! (ngroup)
+    type(report_t) :: report
+    real(wp) :: element_force(size(taken)), none(0, 0)
+    logical :: vary(size(active))
+
+    associate (solve => equations%solves(equations%now), buffers => equations%buffers)
+      element_force = buffers%force
+      if (present(drivers)) then
+        call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, solve%pattern, &
+                          instant, du, none, solution, drivers, buffers, equations%timers, report)
+      else
+        vary = equations%drivers%vary
+        equations%drivers%vary = .false.
+        call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, solve%pattern, &
+                          instant, du, none, solution, equations%drivers, buffers, equations%timers, report)
+        equations%drivers%vary = vary
+      end if
+      taken = buffers%force
+      buffers%force = element_force
+    end associate
+    done = report%status == block_done
+  end subroutine take_up
+
+  !> Heat of the elements of groups at the nodes. What the buffers hold is kept.
+  subroutine gather_heat(equations, active, of_elements, heat)
+    type(equations_t), intent(inout) :: equations
+    logical, intent(in) :: active(:)          !! (ngroup)
+    real(wp), intent(in) :: of_elements(:)    !! (nforce) [energy]
+    real(wp), intent(out) :: heat(:)          !! (ndof) [energy]
+    real(wp) :: element_force(size(of_elements)), magnitude(size(heat))
+
+    associate (solve => equations%solves(equations%now), buffers => equations%buffers)
+      element_force = buffers%force
+      buffers%force = merge(of_elements, 0.0_wp, of_groups(equations, active))
+      call gather_forces(solve%pattern, buffers, solve%is_own, heat, magnitude)
+      buffers%force = element_force
+    end associate
+  end subroutine gather_heat
 
   !> Add to errors of phases at the end of a step what errors of the temperatures there make of them. Hardness follows the
   !> fractions: it has no derivative of its own.

@@ -4,11 +4,11 @@
 !> own solve has found it in this step, or as predicted from the last step. Once in turns is first order in the step; in turns until
 !> nothing changes any more is the result of the monolithic solve. What drives heat is handed over by exchange_in_turns.
 module step_solves
-  use damping, only: prepare_damping
   use contact_lag, only: add_lag, lag_t, lags, measure_lag
+  use damping, only: prepare_damping
   use equations, only: equations_t
-  use fields, only: displacement_field
   use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
+  use fields, only: displacement_field
   use first_step_parts, only: solve_motion
   use heat_in_system, only: estimate_heat_in_system
   use heat_stages, only: is_heat_alone, solve_heat

@@ -1,7 +1,8 @@
 !> This process: its terminal, its memory, its time, and its end.
-module own_process
+module this_process
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: i8, wp
+  use proc_entries, only: bytes_in
   implicit none
   private
   public :: cpu_seconds, is_terminal, peak_memory_mb, program_stop, wall_seconds
@@ -47,24 +48,10 @@ contains
   !> Linux's own figure first: getrusage's also counts what the process was before exec.
   function peak_memory_mb() result(megabytes)
     real(wp) :: megabytes
-    character(len=256) :: line
     type(usage_t) :: usage
-    integer :: unit, status
-    integer(i8) :: kilobytes
 
-    megabytes = 0
-    open (newunit=unit, file='/proc/self/status', status='old', action='read', iostat=status)
-    if (status == 0) then
-      do
-        read (unit, '(a)', iostat=status) line
-        if (status /= 0) exit
-        if (line(:6) /= 'VmHWM:') cycle
-        read (line(7:), *, iostat=status) kilobytes
-        if (status == 0) megabytes = real(kilobytes, wp)/1024
-        exit
-      end do
-      close (unit)
-    end if
+    call bytes_in('/proc/self/status', 'VmHWM', megabytes)
+    megabytes = max(megabytes, 0.0_wp)/2**20
     if (megabytes > 0) return
     if (c_getrusage(0_c_int, usage) == 0) megabytes = real(usage%peak_resident, wp)/1024
   end function peak_memory_mb
@@ -92,4 +79,4 @@ contains
     call c_exit(int(code, c_int))
   end subroutine program_stop
 
-end module own_process
+end module this_process
