@@ -6,10 +6,10 @@
 module interface_sides
   use block_mesh, only: polygon_area
   use boundary_curves, only: boundary_curve_t, boundary_length, closest_position, point_on, position_t, size_of_boundary
+  use corrected_contours, only: contour_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
   use material_interfaces, only: interface_t, path_between
-  use part_contour, only: contour_t
   use scene, only: is_solid, scene_t
   use text, only: to_text
   use vectors, only: length_of

@@ -1,8 +1,8 @@
 !> Where the points of zones are.
 module zone_point_coordinates
   use boundary_curves, only: point_on
+  use corrected_contours, only: contour_t
   use kinds, only: wp
-  use part_contour, only: contour_t
   use zones, only: zone_point_t
   implicit none
   private
