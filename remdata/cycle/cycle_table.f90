@@ -25,6 +25,8 @@ module cycle_table
   integer, parameter :: at_generation = 1, at_stop_step = 3, at_stop_time = 4, at_step = 5, at_action = 7, at_accepted = 9, &
                         at_stage = 10, at_error_after = 14, at_force = 25, at_reason = 28
   integer, parameter :: number_of_columns = 28
+  !> What whole numbers and others are written with.
+  character(len=*), parameter :: digits = '0123456789', in_numbers = digits//'+-.eE'
 
   !> The columns of a row that decisions depend on.
   type :: try_row_t
@@ -88,6 +90,8 @@ contains
       cells(k)%s = line(first:last)
       first = last + 2
     end do
+    if (.not. all(is_made_of([cells(at_generation), cells(at_stop_step), cells(at_step)], digits))) return
+    if (.not. is_made_of(cells(at_stop_time), in_numbers)) return
     read (cells(at_generation)%s, *, iostat=status) row%generation
     if (status /= 0) return
     read (cells(at_stop_step)%s, *, iostat=status) row%stop_step
@@ -100,24 +104,35 @@ contains
     row%accepted = cells(at_accepted)%s == 'y'
     row%stage = cells(at_stage)%s
     row%reason = cells(at_reason)%s
-    call read_known(cells(at_error_after)%s, row%error_after, status)
-    if (status == 0) call read_known(cells(at_force)%s, row%force, status)
+    call read_known(cells(at_error_after), row%error_after, status)
+    if (status == 0) call read_known(cells(at_force), row%force, status)
     if (status /= 0) return
     good = row%accepted .or. cells(at_accepted)%s == 'n'
   end subroutine parse_row
 
   !> A number, 0 for an empty cell.
   pure subroutine read_known(cell, value, status)
-    character(len=*), intent(in) :: cell
+    type(string_t), intent(in) :: cell
     real(wp), intent(out) :: value
     integer, intent(out) :: status
 
     value = 0
     status = 0
-    if (cell == '') return
-    read (cell, *, iostat=status) value
+    if (cell%s == '') return
+    status = 1
+    if (is_made_of(cell, in_numbers)) read (cell%s, *, iostat=status) value
     if (status /= 0) value = 0
   end subroutine read_known
+
+  !> Whether a cell has these characters and no others. A list-directed read takes more for a number: `/` ends it and leaves the
+  !> value as it was, `2*5` is two of them, and what follows a blank is not seen.
+  elemental function is_made_of(cell, characters) result(yes)
+    type(string_t), intent(in) :: cell
+    character(len=*), intent(in) :: characters
+    logical :: yes
+
+    yes = len(cell%s) > 0 .and. verify(cell%s, characters) == 0
+  end function is_made_of
 
   !> Cells as a line of the table; characters that would separate cells are replaced.
   pure function line_of_cells(cells) result(line)
