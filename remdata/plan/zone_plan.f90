@@ -10,7 +10,7 @@ module zone_plan
   use block_mesh, only: polygon_area
   use block_zones, only: are_blocks, zones_of_blocks
   use body_outlines, only: refuse_inner_sets
-  use boundary_curves, only: arc_length_at, position_t
+  use boundary_curves, only: arc_length_at, boundary_length, position_t
   use corrected_contours, only: contour_t
   use derived_zones, only: one_zone
   use errors, only: error_t, exit_input, fail
@@ -22,10 +22,15 @@ module zone_plan
   use remesher_options, only: has_zones
   use scene, only: is_solid, lacks_mesh, scene_t
   use text, only: to_text
+  use zone_point_coordinates, only: coordinates
   use zones, only: follows_contour, plan_t, zone_point_t
   implicit none
   private
   public :: plan_zones
+
+  !> Corners of zones no farther apart than this share of the contour coincide: the end of an arc and the start of the next are one
+  !> point, but for round-off.
+  real(wp), parameter :: coincidence_tolerance = 1.0e-9_wp
 
 contains
 
@@ -118,16 +123,20 @@ contains
     type(contour_t), intent(in) :: contours(:)
     type(plan_t), intent(in) :: plan
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: length, apart, at(2)
     integer :: i, k
 
     do k = 2, size(plan%points)
       do i = 1, k - 1
         associate (a => plan%points(i), b => plan%points(k))
           if (a%boundary == 0 .or. a%boundary /= b%boundary) cycle
-          if (abs(arc_length_at(contours(a%boundary)%boundary, a%position) &
-                  - arc_length_at(contours(b%boundary)%boundary, b%position)) > 0) cycle
-          call fail(error, exit_input, 'two corners of zones'//names_of(a, b)//' coincide at x = '//to_text(a%x(1)) &
-                    //', y = '//to_text(a%x(2))//': the contour has lost a corner there', &
+          length = boundary_length(contours(a%boundary)%boundary)
+          apart = modulo(arc_length_at(contours(a%boundary)%boundary, a%position) &
+                         - arc_length_at(contours(b%boundary)%boundary, b%position), length)
+          if (min(apart, length - apart) > coincidence_tolerance*length) cycle
+          at = coordinates(contours, a)
+          call fail(error, exit_input, 'two corners of zones'//names_of(a, b)//' coincide at x = '//to_text(at(1)) &
+                    //', y = '//to_text(at(2))//': the contour has lost a corner there', &
                     'give zones that fit the new shape, or remesh earlier')
           return
         end associate
