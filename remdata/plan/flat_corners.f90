@@ -9,8 +9,7 @@ module flat_corners
   use kinds, only: pi, wp
   use vectors, only: length_of
   use zone_division, only: add_zone, divide_side, inner_sets, length_along, opposite, zone_beyond
-  use zone_point_coordinates, only: coordinates
-  use zones, only: as_found, plan_t, zone_point_t
+  use zones, only: as_found, coordinates_of, plan_t, zone_point_t
   implicit none
   private
   public :: divide_flat_zones
@@ -133,7 +132,7 @@ contains
       integer, intent(in) :: p
       real(wp) :: x(2)
 
-      x = coordinates(contours, plan%points(p))
+      x = coordinates_of(contours%boundary, plan%points(p))
     end function placed
 
   end subroutine split_in_three
@@ -147,7 +146,7 @@ contains
 
     associate (from => plan%points(side(1)), to => plan%points(side(2)))
       if (zone_beyond(plan, side) > 0) then
-        length = length_of(coordinates(contours, to) - coordinates(contours, from))
+        length = length_of(coordinates_of(contours%boundary, to) - coordinates_of(contours%boundary, from))
       else
         length = length_along(contours(from%boundary)%boundary, from%position, to%position)
       end if

@@ -5,8 +5,7 @@ module zone_division
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, point_on, position_at_arc_length, position_t
   use corrected_contours, only: contour_t
   use kinds, only: wp
-  use zone_point_coordinates, only: coordinates
-  use zones, only: as_found, plan_t, zone_point_t, zone_t
+  use zones, only: as_found, coordinates_of, plan_t, zone_point_t, zone_t
   implicit none
   private
   public :: zone_beyond, opposite, divide_side, inner_sets, add_zone, length_along
@@ -82,7 +81,7 @@ contains
 
     associate (from => plan%points(side(1)), to => plan%points(side(2)))
       if (zone_beyond(plan, side) > 0) then
-        new%x = (1 - share)*coordinates(contours, from) + share*coordinates(contours, to)
+        new%x = (1 - share)*coordinates_of(contours%boundary, from) + share*coordinates_of(contours%boundary, to)
       else
         new%boundary = from%boundary
         associate (boundary => contours(new%boundary)%boundary)

@@ -22,8 +22,7 @@ module zone_plan
   use remesher_options, only: has_zones
   use scene, only: is_solid, lacks_mesh, scene_t
   use text, only: to_text
-  use zone_point_coordinates, only: coordinates
-  use zones, only: follows_contour, plan_t, zone_point_t
+  use zones, only: coordinates_of, follows_contour, plan_t, zone_point_t
   implicit none
   private
   public :: plan_zones
@@ -134,7 +133,7 @@ contains
           apart = modulo(arc_length_at(contours(a%boundary)%boundary, a%position) &
                          - arc_length_at(contours(b%boundary)%boundary, b%position), length)
           if (min(apart, length - apart) > coincidence_tolerance*length) cycle
-          at = coordinates(contours, a)
+          at = coordinates_of(contours%boundary, a)
           call fail(error, exit_input, 'two corners of zones'//names_of(a, b)//' coincide at x = '//to_text(at(1)) &
                     //', y = '//to_text(at(2))//': the contour has lost a corner there', &
                     'give zones that fit the new shape, or remesh earlier')
