@@ -3,6 +3,7 @@ module mesh_choice
   use better_mesh, only: free_mesh_is_better
   use body_seams, only: seams_t
   use boundary_curves, only: boundary_curve_t
+  use corrected_contours, only: contour_t
   use errors, only: error_t, exit_input
   use fields, only: field_t, on_nodes
   use gmsh_call, only: find_gmsh
@@ -12,7 +13,6 @@ module mesh_choice
   use mesh_without_zones, only: make_mesh_without_zones
   use new_mesh_check, only: check_new_mesh, mesh_check_t
   use outline_mesh, only: mesher_t
-  use part_contour, only: contour_t
   use remesh_facts, only: begin_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use remesher_options, only: as_it_comes, by_free, by_gmsh, elements_allowed, has_zones, remesher_options_t

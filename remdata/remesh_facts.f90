@@ -1,11 +1,11 @@
 !> Results of a remesh, the stage it reached and the time each task took: for the report.
 module remesh_facts
+  use corrected_contours, only: contour_report_t
   use cuts, only: cut_record_t
   use kinds, only: wp
   use material_volumes, only: materials_kept_t
   use mesh_prediction, only: prediction_t
   use new_mesh_check, only: mesh_check_t
-  use part_contour, only: contour_report_t
   use timers, only: ledger_t
   use transfer_report, only: carried_quantity_t, transfer_report_t
   implicit none

@@ -11,11 +11,11 @@
 module contact_gaps
   use closest_point, only: closest_point_t
   use boundary_sides, only: loop_t
-  use contact_intervals, only: along, coincide, contact_interval_t, side_point_t, sort_intervals, wrap_start
   use die_closest_points, only: find_closest_point, point_on_side
   use dies, only: die_t, present_die
   use fields, only: pilot_field
   use kinds, only: wp
+  use loop_intervals, only: along, coincide, contact_interval_t, side_point_t, sort_intervals, wrap_start
   use scene, only: scene_t
   use side_tags, only: side_tags_t
   use solution, only: solution_t

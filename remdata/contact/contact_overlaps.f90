@@ -8,10 +8,10 @@ module contact_overlaps
   use arcs_on_die, only: follow_die
   use boundary_sides, only: loop_t
   use closest_point, only: closest_point_t
-  use contact_intervals, only: side_point_t
   use die_closest_points, only: distance_along, find_closest_point, point_on_side
   use dies, only: die_t, is_deformable
   use kinds, only: eps, wp
+  use loop_intervals, only: side_point_t
   use vectors, only: length_of
   implicit none
   private

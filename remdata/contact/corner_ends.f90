@@ -6,9 +6,9 @@
 module corner_ends
   use boundary_curves, only: boundary_curve_t, boundary_of_loop, joint_after, turn_at
   use boundary_sides, only: loop_t
-  use contact_intervals, only: along, contact_interval_t, side_point_t
   use die_closest_points, only: point_on_side
   use kinds, only: wp
+  use loop_intervals, only: along, contact_interval_t, side_point_t
   use side_tags, only: same_tags, side_tags_t
   use vectors, only: length_of
   implicit none

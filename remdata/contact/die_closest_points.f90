@@ -3,10 +3,10 @@ module die_closest_points
   use arcs, only: arc_t
   use boundary_sides, only: loop_t
   use closest_point, only: closest_point_t, closest_within_piece
-  use contact_intervals, only: side_point_t
   use curve_search, only: closest_on_pieces
   use dies, only: die_t
   use kinds, only: eps, wp
+  use loop_intervals, only: side_point_t
   use offset_parabolas, only: closest_xi, offset_parabola_t, point_at
   use plane_vectors, only: turned
   use vectors, only: length_of

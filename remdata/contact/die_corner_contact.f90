@@ -5,9 +5,9 @@
 !> closed. A contour that left the die before would have its corner inside, and miss its force.
 module die_corner_contact
   use boundary_sides, only: loop_t
-  use contact_intervals, only: along, contact_interval_t, side_point_t
   use corner_weights, only: handing_over
   use kinds, only: wp
+  use loop_intervals, only: along, contact_interval_t, side_point_t
   use quadrature, only: line_rule
   use scene, only: scene_t
   use solution, only: solution_t

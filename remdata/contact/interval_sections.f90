@@ -10,10 +10,10 @@
 module interval_sections
   use boundary_sides, only: loop_t
   use closest_point, only: closest_point_t
-  use contact_intervals, only: along, contact_interval_t, is_before_corner, side_point_t
   use die_closest_points, only: distance_along, find_closest_point, point_on_side
   use dies, only: die_t
   use kinds, only: wp
+  use loop_intervals, only: along, contact_interval_t, is_before_corner, side_point_t
   use quadrature, only: line_rule, rule_t
   use side_tags, only: same_tags, side_tags_t
   use vectors, only: length_of

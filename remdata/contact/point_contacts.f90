@@ -5,11 +5,11 @@
 !> the part's own there, the new mesh has a node at the place, and the force goes on to it (contact_carry).
 module point_contacts
   use boundary_sides, only: loop_t
-  use contact_intervals, only: along, contact_interval_t, side_point_t
   use corner_weights, only: corner_weight, place_within
   use die_closest_points, only: point_on_side
   use die_corner_contact, only: find_corners
   use kinds, only: wp
+  use loop_intervals, only: along, contact_interval_t, side_point_t
   use quadrature, only: is_control_point, line_rule
   use scene, only: scene_t
   use solution, only: solution_t

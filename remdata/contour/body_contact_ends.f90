@@ -5,9 +5,9 @@
 module body_contact_ends
   use closest_point, only: closest_point_t
   use boundary_sides, only: loop_t
-  use contact_intervals, only: side_point_t
-  use contour_assembly, only: contact_t
+  use contour_contacts, only: contact_t
   use dies, only: die_t, is_deformable
+  use loop_intervals, only: side_point_t
   implicit none
   private
   public :: add_body_contact_ends

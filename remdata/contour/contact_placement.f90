@@ -3,14 +3,16 @@ module contact_placement
   use boundary_sides, only: loop_t
   use contact_ends, only: contact_end_t
   use contact_gaps, only: close_gaps, mark_small_gaps
-  use contact_intervals, only: along, contact_interval_t, find_intervals, is_shared, sort_intervals
-  use contour_assembly, only: contact_t
+  use contact_intervals, only: find_intervals
+  use contour_contacts, only: contact_t
+  use corrected_contours, only: contour_options_t
   use die_corner_contact, only: extend_to_corners
   use corner_ends, only: end_in_corners
   use dies, only: present_die
   use fields, only: pilot_field
   use interval_sections, only: section_t, sections_of_interval, start_at_contact_point
   use kinds, only: pi, wp
+  use loop_intervals, only: along, contact_interval_t, is_shared, sort_intervals
   use own_contact, only: faces_itself
   use point_contacts, only: find_points, lies_beside, point_contact_t
   use scene, only: scene_t
@@ -19,23 +21,7 @@ module contact_placement
   use state_variables, only: find_variable
   implicit none
   private
-  public :: contour_options_t, place_contacts
-
-  type :: contour_options_t
-    !> A corner is where the tangent turns by more than this [radian].
-    real(wp) :: corner_turn = 20*pi/180
-    !> Contact over less than this share of a side is contact at a point.
-    real(wp) :: least_contact = 0.05_wp
-    !> Gaps between two intervals no wider than this share of a side are closed: no mesh resolves them.
-    real(wp) :: narrow_gap = 0.01_wp
-    !> Gaps no wider than this share of a side, and no longer than some sides, are small gaps: their ends are not resolved by the
-    !> mesh.
-    real(wp) :: small_gap_width = 0.1_wp, small_gap_length = 2.0_wp
-    !> Free sides that lead from a corner to contact are dropped when they are shorter [length].
-    real(wp) :: least_free = 0.0_wp
-    !> Loops up to this length, in which a free contour crosses itself, are cut off [length].
-    real(wp) :: longest_lap = 0.0_wp
-  end type contour_options_t
+  public :: place_contacts
 
   !> Old sides that turn by less than a corner may form one on the die: corners are kept, and sides are steep, from this share of
   !> the turn on.

@@ -3,47 +3,24 @@
 !> The arcs of part and die follow each other from one beginning or end of contact to the next. The order of nodes in a list is not
 !> used (annex 2, fig. 4): each arc has its curve and its range of xi.
 module contour_assembly
-  use arcs, only: arc_t, straight
+  use arcs, only: arc_t
   use arcs_on_die, only: follow_die
-  use boundary_curves, only: boundary_curve_t, close_boundary, kind_end, kind_entry, kind_exit, kind_joint
+  use boundary_curves, only: boundary_curve_t, kind_end, kind_entry, kind_exit, kind_joint
+  use boundary_draft, only: add_arc, boundary_draft_t, finish_boundary
   use boundary_sides, only: loop_t
   use closest_point, only: closest_point_t
-  use contact_intervals, only: along, contact_interval_t, is_shared, side_point_t
   use contact_overlaps, only: arcs_of_overlap, find_overlap, overlap_t
-  use dies, only: die_t, is_deformable
-  use interval_sections, only: section_t
+  use contour_contacts, only: contact_t, end_of_walk, first_closest_point, last_closest_point, mark_neighbours, next_contact
+  use dies, only: is_deformable
   use kinds, only: wp
-  use offset_parabolas, only: point_at, tangent_at
+  use loop_intervals, only: along, side_point_t
+  use offset_parabolas, only: tangent_at
   use plane_vectors, only: cross
   use side_tags, only: same_tags, side_tags_t
   use vectors, only: length_of
   implicit none
   private
-  public :: contact_t, assemble_boundary
-
-  !> A contact interval with its die in its present position, and its arcs on the boundary curve.
-  type :: contact_t
-    type(contact_interval_t) :: interval
-    type(section_t), allocatable :: sections(:)
-    type(die_t) :: die
-    integer :: number = 0   !! of the die in the scene
-    real(wp) :: pilot(3) = 0.0_wp
-    !> First arc of the interval, and the arc after its last.
-    integer :: first = 0, next = 0
-    !> Contact begins or ends there; otherwise another interval is adjacent, or a small gap separates them.
-    logical :: begins = .true., ends = .true.
-  end type contact_t
-
-  !> The boundary curve under construction.
-  type :: boundary_draft_t
-    type(arc_t), allocatable :: arcs(:)
-    integer, allocatable :: kinds(:)
-    integer :: n = 0
-    !> Gaps up to this one are closed [length].
-    real(wp) :: closed_gap = 0.0_wp
-    !> Kind of the joint before the next arc.
-    integer :: pending = kind_end
-  end type boundary_draft_t
+  public :: assemble_boundary
 
   !> Coincidence tolerance: a shorter part of a side, in half sides, is dropped.
   real(wp), parameter :: shortest_part = 1.0e-10_wp
@@ -119,19 +96,6 @@ contains
     end do
   end subroutine assemble_boundary
 
-  !> Limit of the free sides after an interval: the next interval, or the end of the loop.
-  pure function next_contact(contacts, k, nside) result(s)
-    type(contact_t), intent(in) :: contacts(:)
-    integer, intent(in) :: k, nside
-    real(wp) :: s
-
-    if (k < size(contacts)) then
-      s = along(contacts(k + 1)%interval%from)
-    else
-      s = along(end_of_walk(contacts, nside))
-    end if
-  end function next_contact
-
   !> The part of the die that a side overlaps before an interval (towards = -1) or after it.
   pure subroutine add_overlap(contact, overlap, towards, nside, draft)
     type(contact_t), intent(in) :: contact
@@ -150,26 +114,10 @@ contains
     end if
     call arcs_of_overlap(contact%die, contact%pilot, contact%number, modulo(overlap%out%side - 1, nside) + 1, closest_points, list)
     do k = 1, size(list)
-      call add(list(k), draft)
+      call add_arc(list(k), draft)
     end do
     if (towards > 0) draft%pending = kind_joint
   end subroutine add_overlap
-
-  pure function first_closest_point(contact) result(closest)
-    type(contact_t), intent(in) :: contact
-    type(closest_point_t) :: closest
-
-    closest = contact%sections(1)%closest_points(1)
-  end function first_closest_point
-
-  pure function last_closest_point(contact) result(closest)
-    type(contact_t), intent(in) :: contact
-    type(closest_point_t) :: closest
-
-    associate (section => contact%sections(size(contact%sections)))
-      closest = section%closest_points(size(section%closest_points))
-    end associate
-  end function last_closest_point
 
   !> The ends of a small gap are no corners, but sets of sides may meet there.
   pure subroutine unmark_joint(tags, joint, boundary)
@@ -182,28 +130,6 @@ contains
     boundary%kinds(joint) = merge(kind_end, kind_joint, &
                                same_tags(tags, boundary%arcs(before)%side, boundary%arcs(joint)%side))
   end subroutine unmark_joint
-
-  !> End of the traversal that starts behind an interval across the start of the loop, or at that start.
-  pure function end_of_walk(contacts, nside) result(side_point)
-    type(contact_t), intent(in) :: contacts(:)
-    integer, intent(in) :: nside
-    type(side_point_t) :: side_point
-
-    side_point = side_point_t(nside, 1.0_wp)
-    if (contacts(size(contacts))%interval%to%side > nside) side_point = contacts(size(contacts))%interval%to
-  end function end_of_walk
-
-  !> An interval that begins where another one ends, or behind a small gap, continues it.
-  pure subroutine mark_neighbours(nside, contacts)
-    integer, intent(in) :: nside
-    type(contact_t), intent(inout) :: contacts(:)
-    integer :: k
-
-    do k = 1, size(contacts)
-      contacts(k)%begins = .not. is_shared(contacts%interval, k, 1, nside)
-      contacts(k)%ends = .not. is_shared(contacts%interval, k, 2, nside)
-    end do
-  end subroutine mark_neighbours
 
   !> Sides and parts of sides of the part between two points.
   pure subroutine add_sides(loop, tags, x, joints, from, to, draft)
@@ -235,7 +161,7 @@ contains
       do
         one%range(2) = minval([last, pack(joints%xi, joints%side == one%side .and. joints%xi > one%range(1) + shortest_arc &
                                           .and. joints%xi < last - shortest_arc)])
-        call add(one, draft)
+        call add_arc(one, draft)
         if (.not. one%range(2) < last) exit
         one%range(1) = one%range(2)
         draft%pending = kind_joint
@@ -261,7 +187,7 @@ contains
         list(k)%side = contact%sections(i)%side
         list(k)%group = contact%interval%group
         list(k)%interval = number
-        call add(list(k), draft)
+        call add_arc(list(k), draft)
       end do
     end do
   end subroutine add_contact
@@ -276,65 +202,5 @@ contains
     other = tangent_at(after, after%range(1))
     yes = abs(cross(one, other)) > kink_sine*length_of(one)*length_of(other)
   end function has_kink
-
-  !> Append an arc, and a straight one before it where the contour would not be closed.
-  pure subroutine add(one, draft)
-    type(arc_t), intent(in) :: one
-    type(boundary_draft_t), intent(inout) :: draft
-
-    if (draft%n > 0) call close_gap(draft%arcs(draft%n), one, draft)
-    call append(one, draft)
-  end subroutine add
-
-  pure subroutine close_gap(before, after, draft)
-    type(arc_t), intent(in) :: before, after
-    type(boundary_draft_t), intent(inout) :: draft
-    type(arc_t) :: bridge
-
-    bridge = straight(point_at(before, before%range(2)), point_at(after, after%range(1)))
-    if (length_of(bridge%points(:, 3) - bridge%points(:, 1)) <= draft%closed_gap) return
-    bridge%side = after%side
-    bridge%die = after%die
-    bridge%piece = after%piece
-    bridge%group = after%group
-    bridge%interval = after%interval
-    call append(bridge, draft)
-  end subroutine close_gap
-
-  pure subroutine append(one, draft)
-    type(arc_t), intent(in) :: one
-    type(boundary_draft_t), intent(inout) :: draft
-    type(arc_t), allocatable :: arcs(:)
-    integer, allocatable :: kinds(:)
-    integer, parameter :: first_size = 64
-
-    if (.not. allocated(draft%arcs)) allocate (draft%arcs(first_size), draft%kinds(first_size))
-    if (draft%n == size(draft%arcs)) then
-      allocate (arcs(2*draft%n), kinds(2*draft%n))
-      arcs(:draft%n) = draft%arcs
-      kinds(:draft%n) = draft%kinds
-      call move_alloc(arcs, draft%arcs)
-      call move_alloc(kinds, draft%kinds)
-    end if
-    draft%n = draft%n + 1
-    draft%arcs(draft%n) = one
-    draft%kinds(draft%n) = draft%pending
-    draft%pending = kind_end
-  end subroutine append
-
-  !> Close the boundary curve. A pending kind at the end of the traversal belongs to the first joint.
-  pure subroutine finish_boundary(draft, corner_turn, boundary)
-    type(boundary_draft_t), intent(inout) :: draft
-    real(wp), intent(in) :: corner_turn
-    type(boundary_curve_t), intent(out) :: boundary
-    integer :: pending
-
-    pending = draft%pending
-    call close_gap(draft%arcs(draft%n), draft%arcs(1), draft)
-    allocate (boundary%arcs, source=draft%arcs(:draft%n))
-    allocate (boundary%kinds, source=draft%kinds(:draft%n))
-    if (pending /= kind_end) boundary%kinds(1) = pending
-    call close_boundary(corner_turn, boundary)
-  end subroutine finish_boundary
 
 end module contour_assembly

@@ -6,9 +6,9 @@ module contour_match
   use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, position_t
   use boundary_sides, only: loop_t
-  use contact_intervals, only: along, side_point_t
-  use contour_assembly, only: contact_t
+  use contour_contacts, only: contact_t
   use kinds, only: wp
+  use loop_intervals, only: along, side_point_t
   use offset_parabolas, only: closest_xi, point_at
   use vectors, only: length_of
   implicit none

@@ -4,13 +4,13 @@
 !> lie on the axis: what a tool or a furnace does to the surface beside the cut it does to the cut surface too.
 module cut_contour
   use arcs, only: arc_t
-  use contact_intervals, only: side_point_t
-  use contour_assembly, only: contact_t
+  use contour_contacts, only: contact_t
   use contour_volume, only: volume_inside
+  use corrected_contours, only: contour_t
   use cut_pieces, only: piece_t
   use kinds, only: wp
+  use loop_intervals, only: side_point_t
   use offset_parabolas, only: closest_xi, point_at
-  use part_contour, only: contour_t
   use side_tags, only: side_tags_t
   use vectors, only: length_of
   implicit none

@@ -6,14 +6,14 @@
 module cut_crossings
   use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, closest_position, joint_point, kind_end, point_on, position_t
+  use corrected_contours, only: contour_t
   use kinds, only: wp
   use offset_parabolas, only: point_at
-  use part_contour, only: contour_t
   use plane_vectors, only: cross
   use vectors, only: length_of
   implicit none
   private
-  public :: cut_crossing_t, crossings_of_line, crossings_of_way, is_after
+  public :: cut_crossing_t, close_to_joint, crossings_of_line, crossings_of_way, is_after
 
   type :: cut_crossing_t
     integer :: contour = 0
@@ -26,6 +26,8 @@ module cut_crossings
     integer :: mate = 0
   end type cut_crossing_t
 
+  !> Where they meet, cuts and joints closer than this share of the smallest element are one point.
+  real(wp), parameter :: close_to_joint = 0.25_wp
   !> Parts of an arc that are looked at, and halvings.
   integer, parameter :: parts = 8, halvings = 60
   !> A cut may end on the contour, within this share of its length.

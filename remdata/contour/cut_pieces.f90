@@ -3,9 +3,9 @@
 module cut_pieces
   use arcs, only: arc_t, cut, straight
   use boundary_curves, only: boundary_curve_t, close_boundary, kind_corner, point_on
+  use corrected_contours, only: contour_t
   use cut_crossings, only: cut_crossing_t, is_after
   use kinds, only: wp
-  use part_contour, only: contour_t
   implicit none
   private
   public :: piece_t, follow_pieces

@@ -2,8 +2,8 @@
 module first_contours
   use boundary_curves, only: close_boundary, kind_end, kind_joint
   use contour_laps, only: find_laps
+  use corrected_contours, only: contour_options_t, contour_report_t, contour_t
   use errors, only: error_t, exit_input, fail
-  use part_contour, only: contour_options_t, contour_report_t, contour_t
   use scene, only: scene_t
   use text, only: to_text
   implicit none

@@ -1,93 +1,33 @@
 !> From the old mesh in its present shape, the dies and the ends of contact to the corrected contours of all bodies.
 !>
-!> Between a beginning and an end of contact the part's contour is replaced by the die's at the depth that carries the pressure.
-!> This changes the part's volume slightly; a small uniform displacement of the free sides restores it. Sides with supports, on the
-!> axis, in contact, and those that are dies of another body are not moved.
+!> Between a beginning and an end of contact the part's contour is replaced by the die's at the depth that carries the pressure
+!> (contact_placement, contour_assembly), and the part keeps its volume (volume_correction).
 module part_contour
   use axis_nodes, only: limit_depths, put_on_axis
   use body_contact_ends, only: add_body_contact_ends
-  use boundary_curves, only: boundary_curve_t, closest_position, joint_point, kind_entry, kind_exit, largest_gap, point_on, &
-                             position_t, size_of_boundary
+  use boundary_curves, only: closest_position, joint_point, kind_entry, kind_exit, largest_gap, point_on, size_of_boundary
   use boundary_sides, only: find_loops, loop_t, loops_found, shared_by_three
   use contact_ends, only: contact_end_t
-  use contact_intervals, only: side_point_t
-  use contact_placement, only: contour_options_t, place_contacts
-  use contour_assembly, only: assemble_boundary, contact_t
-  use contour_laps, only: lap_t
-  use folded_sides, only: fold_t, open_folds, own_sides
-  use contour_volume, only: shift_sides, volume_inside, volume_of_loop
+  use contact_placement, only: place_contacts
+  use corrected_contours, only: contact_limit_t, contour_options_t, contour_report_t, contour_t
   use die_closest_points, only: point_on_side
   use errors, only: error_t, exit_bug, fail
+  use folded_sides, only: open_folds
   use kinds, only: wp
-  use scene, only: axisymmetric, is_solid, scene_t, solid_elements
-  use point_contacts, only: point_contact_t
+  use loop_intervals, only: side_point_t
   use refused_laps, only: refuse_laps
-  use short_die_arcs, only: drop_short_die_arcs
-  use short_free_sides, only: drop_short_grounds, drop_short_sides
-  use small_laps, only: cut_small_laps
-  use side_tags, only: find_tags, held_nodes, side_tags_t
+  use scene, only: axisymmetric, is_solid, scene_t, solid_elements
+  use side_tags, only: find_tags, held_nodes
   use solution, only: present_coordinates, solution_t
   use text, only: to_text
   use vectors, only: length_of
+  use volume_correction, only: keep_volume
   implicit none
   private
-  public :: contour_options_t, contour_t, contour_report_t, build_contours
-
-  !> Beginning or end of contact.
-  type :: contact_limit_t
-    integer :: kind = 0   !! `kind_entry` or `kind_exit`
-    real(wp) :: point(2) = 0.0_wp   !! [length]
-    !> Depth in the die: zero where the part leaves it, but not at a corner of the part [length].
-    real(wp) :: depth = 0.0_wp
-  end type contact_limit_t
-
-  !> One loop of the old mesh, corrected.
-  type :: contour_t
-    type(loop_t) :: loop
-    type(side_tags_t) :: tags
-    type(boundary_curve_t) :: boundary
-    !> Contact intervals that were replaced (`arc_t%interval` is their number).
-    type(contact_t), allocatable :: contacts(:)
-    !> Where contact is at a point.
-    type(point_contact_t), allocatable :: points(:)
-    !> Area, or volume per radian, inside the old loop and the boundary curve; negative around holes.
-    real(wp) :: volume_before = 0.0_wp, volume_after = 0.0_wp
-    !> Outward displacement of the free sides [length], and whether it restores the volume.
-    real(wp) :: shift = 0.0_wp
-    logical :: restored = .true.
-    !> Largest distance from an old node of the loop to the boundary curve [length].
-    real(wp) :: largest_move = 0.0_wp
-    !> Small laps that were cut off.
-    type(fold_t), allocatable :: laps(:)
-  end type contour_t
-
-  !> Results of the correction for all contours.
-  type :: contour_report_t
-    type(contact_limit_t), allocatable :: limits(:)
-    type(lap_t), allocatable :: laps(:)
-    !> Sides of a body that lie on other sides of it, and small laps that were cut off.
-    type(fold_t), allocatable :: folds(:)
-    !> Moves of the nodes of such sides (2, nnode), where there are any [length].
-    real(wp), allocatable :: opened(:, :)
-    !> Largest shift and move of all contours; largest relative change of volume of one [length, length, -].
-    real(wp) :: largest_shift = 0.0_wp, largest_move = 0.0_wp, volume_error = 0.0_wp
-    !> Largest distance from the contours to a kept end of contact as the solver found it, as a share of the contour.
-    real(wp) :: off_ends = 0.0_wp
-    !> Points of contact with nothing in contact beside them (2, n) [length].
-    real(wp), allocatable :: points(:, :)
-    !> Small gaps between contact intervals, whose ends are not among the limits.
-    integer :: small_gaps = 0
-    !> Contact intervals dropped because they run backwards along their die.
-    integer :: backward_intervals = 0
-  end type contour_report_t
+  public :: contour_options_t, build_contours
 
   !> The boundary curve is closed within this share of its size.
   real(wp), parameter :: closed_within = 1.0e-9_wp
-
-  !> The free sides are moved at most so many times, until the volume is the old one to the first of these shares; it is accepted
-  !> when it is so to the second.
-  integer, parameter :: most_shifts = 8
-  real(wp), parameter :: same_volume = 1.0e-14_wp, kept_volume = 1.0e-13_wp
 
 contains
 
@@ -136,7 +76,7 @@ contains
       do i = 1, size(loops)
         call add_body_contact_ends(contours(i)%contacts, scene%dies, loops(k), joints)
       end do
-      call correct(scene, x, uncorrected, held, options, joints, contours(k))
+      call keep_volume(scene, x, uncorrected, held, options, joints, contours(k))
       call list_limits(contours(k), report%limits)
       do i = 1, size(contours(k)%points)
         report%points = reshape([report%points, contours(k)%points(i)%point], [2, size(report%points, 2) + 1])
@@ -200,77 +140,6 @@ contains
       n = n + size(scene%groups(g)%connectivity, 2)
     end do
   end subroutine gather_solids
-
-  !> The boundary curve, and the displacement of the free sides that keeps the volume.
-  pure subroutine correct(scene, x, uncorrected, held, options, joints, contour)
-    type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: x(:, :)             !! (2, nnode) now, those on the axis limited in depth [length]
-    real(wp), intent(in) :: uncorrected(:, :)   !! (2, nnode) now, with folds opened [length]
-    logical, intent(in) :: held(:)              !! (nnode) fixed nodes
-    type(contour_options_t), intent(in) :: options
-    type(side_point_t), intent(in) :: joints(:)   !! (njoint) ends of contact with other bodies
-    type(contour_t), intent(inout) :: contour
-    real(wp) :: moved(2, size(x, 2))
-    logical :: may_move(size(contour%loop%sides, 2)), own(size(may_move)), round
-    type(position_t) :: position
-    real(wp) :: shift, gain
-    logical :: moves
-    integer :: k, i
-
-    round = scene%plane_state == axisymmetric
-    own = own_sides(scene, contour%tags)
-    contour%volume_before = volume_of_loop(contour%loop, uncorrected, round)
-    call draw_boundary(x, own, options, joints, contour)
-    contour%volume_after = volume_inside(contour%boundary, round)
-    if (size(contour%contacts) + size(contour%points) == 0) return
-    moved = x
-    may_move = .not. (contour%tags%on_axis .or. any(contour%tags%on_die, 1))
-    do k = 1, size(contour%contacts)
-      associate (interval => contour%contacts(k)%interval)
-        do i = min(interval%from%side, interval%found(1)%side), max(interval%to%side, interval%found(2)%side)
-          may_move(modulo(i - 1, size(may_move)) + 1) = .false.
-        end do
-      end associate
-    end do
-    may_move(contour%points%place%side) = .false.
-    ! where the contour follows a die past the end of contact, the rest of a side depends on the position of the side
-    do i = 1, most_shifts
-      gain = contour%volume_before - contour%volume_after
-      if (i > 1 .and. abs(gain) <= same_volume*abs(contour%volume_before)) exit
-      call shift_sides(contour%loop, may_move, held, round, gain, moved, shift, moves)
-      if (.not. moves) exit
-      contour%shift = contour%shift + shift
-      call draw_boundary(moved, own, options, joints, contour)
-      contour%volume_after = volume_inside(contour%boundary, round)
-    end do
-    contour%restored = abs(contour%volume_before - contour%volume_after) <= kept_volume*abs(contour%volume_before)
-    do k = 1, size(may_move)
-      do i = 1, 2
-        position = closest_position(contour%boundary, x(:, contour%loop%sides(i, k)))
-        contour%largest_move = max(contour%largest_move, &
-                                   length_of(point_on(contour%boundary, position) - x(:, contour%loop%sides(i, k))))
-      end do
-    end do
-  end subroutine correct
-
-  !> The boundary curve of a contour with its nodes at x.
-  pure subroutine draw_boundary(x, own, options, joints, contour)
-    real(wp), intent(in) :: x(:, :)   !! (2, nnode) [length]
-    logical, intent(in) :: own(:)     !! (nside) sides that face their own body
-    type(contour_options_t), intent(in) :: options
-    type(side_point_t), intent(in) :: joints(:)   !! (njoint) ends of contact with other bodies
-    type(contour_t), intent(inout) :: contour
-
-    call assemble_boundary(contour%loop, contour%tags, x, options%corner_turn, joints, contour%contacts, contour%boundary)
-    if (options%least_free > 0) then
-      call drop_short_die_arcs(options%least_free, contour%tags, contour%contacts, contour%boundary)
-      call drop_short_sides(options%least_free, contour%tags, contour%contacts, contour%boundary)
-      call drop_short_grounds(options%least_free, own, contour%tags, contour%contacts, contour%boundary)
-    end if
-    contour%laps = [fold_t ::]
-    if (options%longest_lap > 0) &
-      call cut_small_laps(options%longest_lap, contour%tags, contour%contacts, contour%boundary, contour%laps)
-  end subroutine draw_boundary
 
   !> Largest distance from a contour to where the solver found ends of contact that are kept [length].
   pure function off_ends(contour, x) result(off)

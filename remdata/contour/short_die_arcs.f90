@@ -6,7 +6,7 @@
 !> instead; contact that began or ended on the other face begins or ends in the corner.
 module short_die_arcs
   use boundary_curves, only: boundary_curve_t, kind_corner, kind_entry, kind_exit, turn_at
-  use contour_assembly, only: contact_t
+  use contour_contacts, only: contact_t
   use kinds, only: wp
   use offset_parabolas, only: point_at
   use short_free_sides, only: is_free, redrawn, remove_arcs

@@ -7,7 +7,7 @@
 module short_free_sides
   use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, close_boundary, kind_corner, kind_end
-  use contour_assembly, only: contact_t
+  use contour_contacts, only: contact_t
   use kinds, only: wp
   use offset_parabolas, only: point_at
   use side_tags, only: same_tags, side_tags_t

@@ -6,7 +6,7 @@
 module small_laps
   use arc_crossings, only: crossings_between, extent, most_crossings, touching
   use boundary_curves, only: boundary_curve_t
-  use contour_assembly, only: contact_t
+  use contour_contacts, only: contact_t
   use folded_sides, only: fold_t
   use kinds, only: wp
   use offset_parabolas, only: length_between, point_at

@@ -14,7 +14,7 @@ module arcs
     integer :: middle = 0
     !> Side of the loop that the arc is part of, or the first side of the loop that it replaces.
     integer :: side = 0
-    !> Die and piece of it, 0 on the part; contact group and contact interval (contact_intervals), 0 on free sides.
+    !> Die and piece of it, 0 on the part; contact group and contact interval (loop_intervals), 0 on free sides.
     integer :: die = 0, piece = 0, group = 0, interval = 0
   end type arc_t
 

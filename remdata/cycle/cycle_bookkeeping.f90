@@ -5,7 +5,8 @@ module cycle_bookkeeping
   use cycle_action, only: act_accept, act_keep_end, act_keep_old_mesh, act_refuse, act_remesh, act_resume, act_roll_back, action_t
   use cycle_folder, only: most_tries
   use cycle_situation, only: checkpoint_file_t, current_name, due_reason, is_read, mesh_name, situation_t, try_name
-  use cycle_table, only: first_step_of, has_new_mesh, line_of_cells, number_of_columns, table_heading
+  use cycle_table, only: line_of_cells, number_of_columns, table_heading
+  use cycle_tries, only: first_step_of, has_new_mesh
   use cycle_ways, only: old_state
   use errors, only: error_t
   use exact_numbers, only: exact_text

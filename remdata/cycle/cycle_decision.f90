@@ -8,8 +8,8 @@ module cycle_decision
   use cycle_refusal, only: refuse_first_steps, refuse_made, refuse_restart
   use cycle_situation, only: current_name, due_reason, ended_check, ended_lagamine, ended_nothing, ended_remdata, is_due, &
     is_first_mesh, is_read, mesh_name, situation_t, try_name
-  use cycle_table, only: agreed_way, any_agreed, first_reason, way_agreed, way_anew, way_coarser, way_earlier, way_finer, &
-    way_mesher, way_old_mesh, way_transfer
+  use cycle_table, only: way_agreed, way_anew, way_coarser, way_earlier, way_finer, way_mesher, way_old_mesh, way_transfer
+  use cycle_tries, only: agreed_way, any_agreed, first_reason
   use cycle_ways, only: is_whole, next_way, old_mesh_goes_on, old_state
   use cuts, only: stage_of_cuts
   use errors, only: exit_done, exit_input, exit_machine, exit_no_convergence, exit_remesh, exit_signal

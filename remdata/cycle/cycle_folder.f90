@@ -4,7 +4,8 @@ module cycle_folder
   use cycle_options, only: cycle_options_t
   use cycle_situation, only: checkpoint_file_t, current_name, ended_lagamine, ended_nothing, ended_remdata, ended_t, first_line, &
     is_due, is_first_mesh, is_read, mesh_name, made_mesh_t, situation_t, try_name
-  use cycle_table, only: number_refused, parse_table, try_row_t
+  use cycle_table, only: parse_table, try_row_t
+  use cycle_tries, only: number_refused
   use errors, only: error_t, exit_done, exit_machine, exit_no_convergence, exit_remesh
   use exchange, only: checkpoint_facts_t, read_facts, read_facts_alone
   use json_lookup, only: json_number, json_text, read_json

@@ -1,8 +1,8 @@
 !> The situation of a cycle: what its folder holds, how the program that was called last ended, what was tried. Plain data, filled
 !> by `cycle_folder` from files and by hand in tests; `cycle_decision` decides the next action.
 module cycle_situation
-  use cycle_table, only: try_row_t
   use cuts, only: trim_trigger, web_trigger
+  use cycle_table, only: try_row_t
   use exchange, only: checkpoint_facts_t
   use remeshing, only: of_distress, trigger_words
   use text, only: to_text, two_digits

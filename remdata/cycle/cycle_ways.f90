@@ -1,9 +1,10 @@
 !> Ways to a new mesh, in the order they are tried at a stop of the old one, and whether the try at hand is there.
 module cycle_ways
   use cycle_situation, only: checkpoint_file_t, is_due_by, is_first_mesh, is_read, must_be_replaced, situation_t
-  use cycle_table, only: agreed_way, keeps_old_mesh, mesh_is_responsible, number_refused, took_earlier, transfer_is_responsible, &
-                         was_refused, way_agreed, way_anew, way_coarser, way_deck, way_earlier, way_finer, way_mesher, &
-                         way_old_mesh, way_transfer
+  use cycle_table, only: way_agreed, way_anew, way_coarser, way_deck, way_earlier, way_finer, way_mesher, way_old_mesh, &
+                         way_transfer
+  use cycle_tries, only: agreed_way, keeps_old_mesh, mesh_is_responsible, number_refused, took_earlier, transfer_is_responsible, &
+                         was_refused
   implicit none
   private
   public :: next_way, old_state, old_mesh_goes_on, is_whole

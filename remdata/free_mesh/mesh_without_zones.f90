@@ -4,11 +4,11 @@ module mesh_without_zones
   use body_outlines, only: find_outlines, outline_t
   use body_seams, only: marks_along_paths, seams_t
   use boundary_curves, only: boundary_curve_t
+  use corrected_contours, only: contour_t
   use errors, only: error_t
   use kinds, only: wp
   use new_mesh_check, only: check_new_mesh, mesh_check_t
   use outline_mesh, only: mesh_outlines, mesher_t
-  use part_contour, only: contour_t
   use remesher_options, only: elements_allowed
   use scene, only: scene_t
   use size_field, only: elements_needed, of_squares, size_field_t

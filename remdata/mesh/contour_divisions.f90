@@ -4,8 +4,9 @@
 !> or parts meet, the sizes may differ by more than the gradation. Along the contour, from one corner of a single zone to the next,
 !> the sizes of such neighbours are smoothed; parts keep their lengths.
 module contour_divisions
+  use curve_divisions, only: divide_curve, shares_of
   use kinds, only: wp
-  use side_curves, only: curve_t, divide_curve, shares_of
+  use side_curves, only: curve_t
   use zone_divisions, only: division_t
   use zones, only: follows_contour, zone_layout_t
   implicit none

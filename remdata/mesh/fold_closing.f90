@@ -2,10 +2,10 @@
 !> again, and with it the pressure.
 module fold_closing
   use boundary_curves, only: position_t
+  use corrected_contours, only: contour_t
   use dies, only: is_deformable, place_on_nodes
   use kinds, only: wp
   use new_scene, only: middle_position
-  use part_contour, only: contour_t
   use scene, only: scene_t
   use shape_functions, only: line3
   use zone_mesh, only: new_mesh_t

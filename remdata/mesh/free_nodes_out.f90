@@ -7,11 +7,11 @@
 !> contact is left to contact_overlaps.)
 module free_nodes_out
   use closest_point, only: closest_point_t
+  use corrected_contours, only: contour_t
   use die_closest_points, only: find_closest_point
   use dies, only: is_deformable, place_on_nodes
   use kinds, only: wp
   use new_scene, only: middle_position
-  use part_contour, only: contour_t
   use plane_vectors, only: turned
   use scene, only: scene_t
   use vectors, only: length_of

@@ -4,10 +4,10 @@
 !> a share of its own angle and sine. So it is in the corner of a material, where an interface meets the contour or another one.
 module new_mesh_check
   use boundary_curves, only: closest_position, joint_point, kind_entry, kind_exit, point_on, size_of_boundary
+  use corrected_contours, only: contour_t
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: pi, wp
   use mesh_quality, only: mesh_shape
-  use part_contour, only: contour_t
   use plane_vectors, only: cross
   use remeshing, only: aspect_ratio, largest_angle, least_angle, middle_share, ncriteria, scaled_jacobian
   use sharp_corners, only: share_of_corner

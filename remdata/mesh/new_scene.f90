@@ -2,11 +2,11 @@
 module new_scene
   use boundary_curves, only: arc_length_at, boundary_length, position_at_arc_length, position_t
   use cards_side_dies, only: curve_of_sides
+  use corrected_contours, only: contour_t
   use dies, only: is_deformable, place_on_nodes
   use errors, only: error_t, exit_no_convergence, fail
   use kinds, only: wp
   use mesh, only: side_set_t
-  use part_contour, only: contour_t
   use scene, only: is_solid, scene_t
   use zone_mesh, only: contour_side_t, new_mesh_t
   use zone_node_numbers, only: ends_of_side, middles_of_side, node_numbers_t, number_nodes

@@ -7,14 +7,14 @@
 !> side.
 module pair_fit
   use closest_point, only: closest_point_t
-  use contour_assembly, only: contact_t
+  use contour_contacts, only: contact_t
+  use corrected_contours, only: contour_t
   use die_closest_points, only: find_closest_point
   use dies, only: die_t, is_deformable, place_on_nodes
   use kinds, only: wp
   use new_scene, only: middle_position
   use own_contact, only: faces_itself
   use plane_vectors, only: turned
-  use part_contour, only: contour_t
   use quadrature, only: line_rule
   use scene, only: scene_t
   use shape_functions, only: line3

@@ -1,22 +1,21 @@
-!> The sides of zones as curves parametrised by arc length, and nodes along them that equidistribute 1/h.
+!> The sides of zones as curves parametrised by arc length, with the lengths at which elements must end.
 !>
 !> A side along the contour has breaks at corners of the contour, where contact begins or ends, and where another set of sides
 !> begins: these are ends of elements. A side along an interface has breaks at corners of the interface.
 module side_curves
   use arcs, only: arc_t, straight
-  use ascending, only: count_up_to
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, joint_after, kind_corner, kind_entry, kind_exit, &
                              kind_joint, point_on, position_at_arc_length, position_t
   use kinds, only: wp
   use offset_parabolas, only: exact_point, length_between, point_at, xi_at_length
-  use directed_sizes, only: size_along
-  use size_field, only: directed_size_at, size_at, size_field_t
+  use size_field, only: size_at, size_field_t
   use vectors, only: length_of
-  use zones, only: coordinates_of, follows_contour, follows_interface, on_boundary, runs_curved, side_arc_lengths, zone_layout_t, &
-                   zone_point_t, zone_side_t, zone_t
+  use zone_layout, only: side_arc_lengths
+  use zones, only: coordinates_of, follows_contour, follows_interface, on_boundary, runs_curved, zone_layout_t, zone_point_t, &
+                   zone_side_t, zone_t
   implicit none
   private
-  public :: curve_t, snap_to_joints, draw_side, curve_point, measure_density, divide_curve, shares_of, has_course
+  public :: curve_t, snap_to_joints, draw_side, curve_point, has_course
 
   type :: curve_t
     integer :: boundary = 0
@@ -41,8 +40,6 @@ module side_curves
   !> No zone point beside a corner, and no entry or exit beside another break, leaves an element shorter than this share of the
   !> requested size.
   real(wp), parameter :: least_share = 0.1_wp
-  !> Bounds of the number of steps along a part in which 1/h is integrated; two steps per element otherwise.
-  integer, parameter :: fewest = 8, most = 4000
 
 contains
 
@@ -222,120 +219,5 @@ contains
       x = exact_point(curve%line, xi_at_length(curve%line, s))
     end if
   end subroutine curve_point
-
-  !> Integrate 1/h along the curve by the trapezoidal rule, in steps of half the requested size.
-  pure subroutine measure_density(boundaries, field, material, curve, other)
-    type(boundary_curve_t), intent(in) :: boundaries(:)   !! (nboundary)
-    type(size_field_t), intent(in) :: field
-    integer, intent(in) :: material
-    type(curve_t), intent(inout) :: curve
-    integer, optional, intent(in) :: other   !! material on the other side: the smaller size of both is used
-    real(wp), allocatable :: at(:), count(:)
-    real(wp) :: h, h_next, s, step, part, x(2), last(2)
-    type(position_t) :: position
-    integer :: p, n
-
-    n = (most + 1)*ubound(curve%breaks, 1)
-    allocate (at(0:n), count(0:n), curve%needs(ubound(curve%breaks, 1)))
-    at(0) = 0
-    count(0) = 0
-    n = 0
-    call curve_point(boundaries, curve, 0.0_wp, x, position)
-    h = requested(x)
-    last = x
-    do p = 1, ubound(curve%breaks, 1)
-      part = curve%breaks(p) - curve%breaks(p - 1)
-      do
-        step = min(max(0.5_wp*h, part/most), part/fewest)
-        s = at(n) + step
-        ! no short step is left before the break
-        if (s + 0.5_wp*step > curve%breaks(p)) s = curve%breaks(p)
-        call curve_point(boundaries, curve, s, x, position)
-        h_next = requested(x)
-        n = n + 1
-        at(n) = s
-        count(n) = count(n - 1) + 0.5_wp*(s - at(n - 1))*(1/along(last, x - last, h) + 1/along(x, x - last, h_next))
-        h = h_next
-        last = x
-        if (.not. s < curve%breaks(p)) exit
-      end do
-      curve%needs(p) = count(n) - sum(curve%needs(:p - 1))
-    end do
-    allocate (curve%at(0:n), source=at(0:n))
-    allocate (curve%count(0:n), source=count(0:n))
-
-  contains
-
-    pure function requested(point) result(size)
-      real(wp), intent(in) :: point(2)
-      real(wp) :: size
-
-      size = size_at(field, material, point)
-      if (present(other)) size = min(size, size_at(field, other, point))
-    end function requested
-
-    !> Size along the curve, where elements may be longer than wide.
-    pure function along(point, direction, square) result(size)
-      real(wp), intent(in) :: point(2), direction(2), square   !! `requested` there
-      real(wp) :: size
-      real(wp) :: across, stretch(2)
-
-      size = square
-      if (.not. field%is_directed) return
-      call directed_size_at(field, material, point, across, stretch)
-      size = size_along(across, stretch, direction)
-      if (.not. present(other)) return
-      call directed_size_at(field, other, point, across, stretch)
-      size = min(size, size_along(across, stretch, direction))
-    end function along
-
-  end subroutine measure_density
-
-  !> Elements of each part of n along the curve: by need, at least one.
-  pure function shares_of(curve, n) result(shares)
-    type(curve_t), intent(in) :: curve
-    integer, intent(in) :: n   !! not less than there are parts
-    integer :: shares(size(curve%needs))
-    integer :: k, p
-
-    shares = 1
-    do k = size(shares) + 1, n
-      p = maxloc(curve%needs/shares, 1)
-      shares(p) = shares(p) + 1
-    end do
-  end function shares_of
-
-  !> Lengths of the n + 1 ends of n elements (0:n).
-  pure subroutine divide_curve(curve, n, ends)
-    type(curve_t), intent(in) :: curve
-    integer, intent(in) :: n            !! not less than there are parts
-    real(wp), intent(out) :: ends(0:)   !! (0:n) [length]
-    integer :: shares(size(curve%needs)), p, k, i
-    real(wp) :: from
-
-    shares = shares_of(curve, n)
-    k = 0
-    ends(0) = 0
-    from = 0
-    do p = 1, size(shares)
-      do i = 1, shares(p) - 1
-        ends(k + i) = length_at(curve, from + curve%needs(p)*i/shares(p))
-      end do
-      from = from + curve%needs(p)
-      k = k + shares(p)
-      ends(k) = curve%breaks(p)
-    end do
-  end subroutine divide_curve
-
-  !> Arc length at a number of elements from the start: linear between the steps of the integration.
-  pure function length_at(curve, n) result(s)
-    type(curve_t), intent(in) :: curve
-    real(wp), intent(in) :: n
-    real(wp) :: s
-    integer :: k
-
-    k = count_up_to(curve%count(1:ubound(curve%count, 1) - 1), n)
-    s = curve%at(k) + (curve%at(k + 1) - curve%at(k))*(n - curve%count(k))/(curve%count(k + 1) - curve%count(k))
-  end function length_at
 
 end module side_curves

@@ -8,8 +8,8 @@ module zone_divisions
   use boundary_curves, only: boundary_curve_t, position_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
-  use side_curves, only: curve_point, curve_t, has_course
   use directed_sizes, only: size_along
+  use side_curves, only: curve_point, curve_t, has_course
   use size_field, only: directed_size_at, size_field_t
   use text, only: to_text
   use vectors, only: length_of

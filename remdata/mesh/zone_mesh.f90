@@ -5,17 +5,19 @@
 module zone_mesh
   use boundary_curves, only: boundary_curve_t, position_t
   use contour_divisions, only: divide_sides, order_along
+  use curve_divisions, only: measure_density
   use errors, only: error_t
   use kinds, only: wp
-  use side_curves, only: curve_point, curve_t, draw_side, measure_density, snap_to_joints
+  use side_curves, only: curve_point, curve_t, draw_side, snap_to_joints
   use side_middles, only: bend_lines, place_middle
   use size_field, only: size_field_t
   use untangle_elements, only: untangle
   use zone_divisions, only: choose_divisions, division_settings_t, division_t
+  use zone_layout, only: lay_out
   use zone_lines, only: find_movable, interpolate_zones, smooth_zones
   use zone_node_numbers, only: divisions_of, ends_of_side, ends_of_zone, middles_of_side, middles_of_zone, node_numbers_t, &
                                number_nodes
-  use zones, only: coordinates_of, follows_interface, lay_out, runs_straight, zone_layout_t, zone_point_t, zone_t
+  use zones, only: coordinates_of, follows_interface, runs_straight, zone_layout_t, zone_point_t, zone_t
   implicit none
   private
   public :: mesh_settings_t, contour_side_t, new_mesh_t, seam_side_t, mesh_zones

@@ -5,9 +5,9 @@
 module body_outlines
   use body_seams, only: mark_sets, seams_t
   use contour_volume, only: volume_inside
+  use corrected_contours, only: contour_t
   use errors, only: error_t, exit_input, fail
   use loop_group, only: group_of
-  use part_contour, only: contour_t
   use scene, only: is_solid, scene_t
   use shape_functions, only: quad8_side
   implicit none

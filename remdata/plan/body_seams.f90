@@ -4,11 +4,11 @@
 module body_seams
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, point_on, position_at_arc_length, &
                              position_t, size_of_boundary
+  use corrected_contours, only: contour_t
   use kinds, only: wp
   use loop_group, only: group_of_element
   use material_interfaces, only: group_interfaces, interface_t, path_between
   use mesh, only: side_set_t
-  use part_contour, only: contour_t
   use scene, only: scene_t
   use solution, only: solution_t
   use vectors, only: length_of

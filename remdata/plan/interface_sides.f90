@@ -6,15 +6,14 @@
 module interface_sides
   use block_mesh, only: polygon_area
   use boundary_curves, only: boundary_curve_t, boundary_length, closest_position, point_on, position_t, size_of_boundary
+  use corrected_contours, only: contour_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
   use material_interfaces, only: interface_t, path_between
-  use part_contour, only: contour_t
   use scene, only: is_solid, scene_t
   use text, only: to_text
   use vectors, only: length_of
-  use zone_point_coordinates, only: coordinates
-  use zones, only: follows_interface, plan_t, zone_point_t
+  use zones, only: coordinates_of, follows_interface, plan_t, zone_point_t
   implicit none
   private
   public :: follow_interfaces
@@ -94,8 +93,8 @@ contains
       character(len=:), allocatable :: words
       real(wp) :: ends(2, 2)
 
-      ends(:, 1) = coordinates(contours, plan%points(side%points(1)))
-      ends(:, 2) = coordinates(contours, plan%points(side%points(2)))
+      ends(:, 1) = coordinates_of(contours%boundary, plan%points(side%points(1)))
+      ends(:, 2) = coordinates_of(contours%boundary, plan%points(side%points(2)))
       words = to_text(0.5_wp*sum(ends(axis, :)), 6)
     end function middle_of
 
@@ -126,7 +125,7 @@ contains
             list(n)%local = [k, l]
             list(n)%materials = [plan%zones(z)%material, plan%zones(y)%material]
             do i = 1, 4
-              x(:, i) = coordinates(contours, plan%points(plan%zones(z)%corners(i)))
+              x(:, i) = coordinates_of(contours%boundary, plan%points(plan%zones(z)%corners(i)))
             end do
             list(n)%points = ends
             if (polygon_area(x) < 0) list(n)%points = ends([2, 1])
@@ -160,7 +159,7 @@ contains
     if (valence == 0) return
     on_contour = point%boundary > 0
     at_end = at_end .or. on_contour .or. valence /= 2
-    here = coordinates(contours, point)
+    here = coordinates_of(contours%boundary, point)
     least = huge(least)
     do i = 1, size(interfaces)
       if (.not. any([(any(sides(s)%points == number) .and. all(sides(s)%materials == interfaces(i)%materials), &
@@ -215,7 +214,7 @@ contains
       if (any(interfaces(number)%materials /= materials)) cycle
       on = .true.
       do k = 1, 2
-        associate (curve => interfaces(number)%curve, x => coordinates(contours, ends(k)))
+        associate (curve => interfaces(number)%curve, x => coordinates_of(contours%boundary, ends(k)))
           positions(k) = closest_position(curve, x)
           on = on .and. length_of(point_on(curve, positions(k)) - x) <= same*size_of_boundary(curve)
         end associate

@@ -4,11 +4,11 @@ module marked_points
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, boundary_of_loop, closest_position, joint_after, &
                              kind_corner, kind_entry, kind_exit, point_on, position_t, size_of_boundary, turn_at
   use contour_match, only: position_of_side_point
+  use corrected_contours, only: contour_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: pi, wp
   use locate_point, only: element_location_t, locate
   use offset_parabolas, only: exact_point
-  use part_contour, only: contour_t
   use scene, only: is_solid, scene_t
   use shape_functions, only: quad8
   use text, only: to_text

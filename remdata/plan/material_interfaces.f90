@@ -7,8 +7,8 @@ module material_interfaces
   use arcs, only: arc_t, cut
   use boundary_curves, only: boundary_curve_t, close_boundary, kind_end, position_t
   use contour_match, only: position_of_side_point
+  use corrected_contours, only: contour_options_t, contour_t
   use kinds, only: wp
-  use part_contour, only: contour_options_t, contour_t
   use scene, only: scene_t
   use shape_functions, only: quad8_side
   use solution, only: solution_t

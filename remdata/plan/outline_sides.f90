@@ -8,9 +8,10 @@ module outline_sides
   use body_seams, only: add_seam_ends, group_beside, lay_out_seams, seams_t
   use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, position_at_arc_length, turn_at
   use contour_divisions, only: divide_sides
+  use corrected_contours, only: contour_options_t
+  use curve_divisions, only: measure_density
   use kinds, only: wp
-  use part_contour, only: contour_options_t
-  use side_curves, only: curve_t, draw_side, measure_density
+  use side_curves, only: curve_t, draw_side
   use size_field, only: size_field_t
   use zone_divisions, only: division_t, rounded_up
   use zones, only: follows_contour, zone_layout_t, zone_point_t, zone_side_t

@@ -6,10 +6,11 @@
 module sizes_of_run
   use block_mesh, only: polygon_area
   use contact_ends, only: contact_end_t
+  use corrected_contours, only: contour_options_t, contour_report_t, contour_t
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
   use old_checkpoint, only: read_old_checkpoint
-  use part_contour, only: build_contours, contour_options_t, contour_report_t, contour_t
+  use part_contour, only: build_contours
   use scene, only: lacks_mesh, scene_t
   use size_field, only: old_mesh_t, size_field_t
   use sizes_of_scene, only: requested_sizes

@@ -5,10 +5,10 @@ module sizes_of_scene
   use contact_misfits, only: needs_of_misfits
   use contour_volume, only: volume_inside
   use contour_needs, only: geometry_settings_t, needs_of_boundary, needs_of_die
+  use corrected_contours, only: contour_t
   use dies, only: is_deformable
   use fields, only: pilot_field
   use kinds, only: wp
-  use part_contour, only: contour_t
   use scene, only: axisymmetric, scene_t
   use remesh_defaults, only: elements_at_first
   use size_field, only: lengthen, need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t

@@ -1,10 +1,12 @@
 !> Transfer of the contact state to the new sides: along each contact interval, from its beginning to its end.
 module contact_carry
   use boundary_curves, only: boundary_curve_t, boundary_length, position_at_arc_length, position_t
-  use contour_assembly, only: contact_t
-  use interval_points, only: interval_points_t, new_row, old_row, round_off, status_row
+  use contour_contacts, only: contact_t
+  use corrected_contours, only: contour_t
+  use interval_points, only: interval_points_t, status_row
   use kinds, only: wp
-  use part_contour, only: contour_t
+  use new_interval_points, only: new_row, round_off
+  use old_interval_points, only: old_row
   use scene, only: role_heat_contact, scene_t
   use solution, only: present_coordinates, solution_t
   use state_variables, only: component_names, find_variable, kind_contact => transfer_contact

@@ -8,11 +8,11 @@ module fold_carry
   use boundary_curves, only: arc_length_at, boundary_length, position_at_arc_length, position_t
   use closest_point, only: closest_point_t
   use contact_carry, only: list_carried
+  use corrected_contours, only: contour_t
   use curve_search, only: closest_opposed_point
   use interval_points, only: status_row
   use kinds, only: wp
   use own_contact, only: faces_itself, pieces_to_meet
-  use part_contour, only: contour_t
   use plane_vectors, only: right_of
   use quadrature, only: line_rule
   use scene, only: group_t, scene_t

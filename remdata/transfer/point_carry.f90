@@ -4,9 +4,10 @@
 !> are those of the old point that presses most.
 module point_carry
   use contact_carry, only: add_integrals, list_carried
-  use interval_points, only: interval_points_t, old_row, status_row, surface
+  use corrected_contours, only: contour_t
+  use interval_points, only: interval_points_t, status_row, surface
   use kinds, only: wp
-  use part_contour, only: contour_t
+  use old_interval_points, only: old_row
   use point_contacts, only: point_contact_t
   use quadrature, only: line_rule
   use scene, only: role_heat_contact, scene_t

@@ -7,8 +7,9 @@
 module tip_carry
   use corner_weights, only: handing_over
   use dies, only: die_t, is_deformable
-  use interval_points, only: interval_points_t, round_off, status_row
+  use interval_points, only: interval_points_t, status_row
   use kinds, only: wp
+  use new_interval_points, only: round_off
   use scene, only: scene_t
   use state_variables, only: find_variable
   use vectors, only: length_of

@@ -11,7 +11,8 @@
 module transfer_states
   use errors, only: error_t, exit_input, fail
   use kinds, only: wp
-  use state_pieces, only: gather_states, hand_out_states, list_variables, state_pieces_t
+  use state_pieces, only: state_pieces_t
+  use state_table, only: gather_states, hand_out_states, list_variables
   use state_variables, only: state_variable_t, transfer_fraction, transfer_scalar, transfer_tensor
   use text, only: to_text
   use transfer_api, only: transfer_options_t, transfer_t

@@ -13,7 +13,9 @@ module law_arbthmet
   use kinds, only: wp
   use law_api, only: driver_temperature, law_line, law_t, parameter, parameter_t, row_of_volume, row_of_work
   use materials, only: has_number, material_t
-  use phase_mechanics, only: has_yield, lacking_mechanical_data, lacking_viscosity, mixture_moduli
+  use mechanical_data, only: lacking_mechanical_data, lacking_viscosity
+  use phase_flow, only: has_yield
+  use phase_mechanics, only: mixture_moduli
   use phase_point, only: first_hardening, first_phases, flow_stress_of_point, place_cowper, place_isig, place_melt, place_rate, &
                          place_stress, place_time, place_trip, place_visco, place_zero, return_of_point, row_plastic, row_trip, &
                          row_work, stress_row

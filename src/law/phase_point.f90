@@ -3,7 +3,7 @@
 !> The deviator s and its von Mises measure q at the end obey s = s_trial - 2 G (3/2) (dp/q + dG) s, so that with A = 1 + 3 G dG,
 !> A q = q_trial - 3 G dp: the return of a steel whose flow stress is A times as large, after which deviators are divided by A.
 !> For a flow stress of slope R' that is dp = f A/(3 G + A R'), f = q_trial/A - R. The flow stress R is that of the mixture
-!> (phase_mechanics): yield and hardening; times a factor of the rate with RATE0 and COWPER; with VISCO plus the stress by the rate
+!> (phase_flow): yield and hardening; times a factor of the rate with RATE0 and COWPER; with VISCO plus the stress by the rate
 !> of each phase, the plastic rate being common to all. From MELT on the hardening is none, and stays so until it is colder.
 !> Sources: J.-B. Leblond, Int. J. Plasticity 5 (1989) 573-591; code_aster R4.04.02; J.C. Simo, R.L. Taylor, CMAME 48 (1985)
 !> 101-118.
@@ -13,13 +13,14 @@ module phase_point
   use kinds, only: wp
   use law_api, only: law_done, law_not_converged
   use materials, only: has_number, material_t
-  use phase_mechanics, only: carry_hardening, has_yield, mixture_moduli, mixture_viscosity, mixture_yield, &
-                             plasticity_of_transformation, strain_of_phases
+  use phase_flow, only: carry_hardening, has_yield, mixture_viscosity, mixture_yield
+  use phase_mechanics, only: mixture_moduli, strain_of_phases
   use phase_state, only: state_size
   use radial_return, only: flow_stress_at, flow_t, return_point
   use rate_dependence, only: rate_cowper, rate_within
   use steels, only: phase_count
   use stress_measures, only: von_mises
+  use transformation_plasticity, only: plasticity_of_transformation
   implicit none
   private
   public :: place_stress, place_time, place_zero, place_trip, place_rate, place_cowper, place_visco, place_isig, place_melt

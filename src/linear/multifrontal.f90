@@ -8,9 +8,10 @@ module multifrontal
   use blas, only: gemv => dgemv, keep_blas_to_one_thread
   use dense_lu, only: block, eliminate, eliminate_shared
   use errors, only: error_t, exit_machine, fail
-  use front_layout, only: front_layout_t, lay_out_fronts
+  use front_layout, only: front_layout_t
   use kinds, only: i8, wp, rk => wp
   use matrix_pattern, only: matrix_pattern_t
+  use symbolic_factorisation, only: lay_out_fronts
   use text, only: to_text
   implicit none
   private

@@ -3,23 +3,17 @@
 !> Dies, loads and contacts are those of the operation. A contact that both have, of the same sides with the same die at the same
 !> place, goes on. The mesh is that of the one before, as a generation of its own: files and remeshing know nothing of operations.
 module next_operation
-  use dies, only: die_t, is_deformable
   use fields, only: displacement_field, find_field, on_nodes, on_section, pilot_field
-  use kinds, only: eps, wp
+  use kinds, only: wp
+  use new_bodies, only: note_laid, place_new_nodes
   use remesh, only: remesh_t
+  use same_dies, only: same_die, same_place
   use scene, only: group_t, is_solid, pilot_at, scene_t
   use solution, only: solution_t, start_solution
   use state_variables, only: find_variable
   implicit none
   private
   public :: begin_operation, mesh_for_operation, remesh_of, same_group
-
-  !> What many small motions leave of their sum, over the size of what moves.
-  real(wp), parameter :: round_off = 1.0e4_wp*eps
-
-  !> Sweeps over new nodes end where they change displacements by less than this share of the largest.
-  real(wp), parameter :: smooth = 1.0e-6_wp
-  integer, parameter :: most_sweeps = 1000
 
 contains
 
@@ -177,61 +171,6 @@ contains
     end do
   end function same_bodies
 
-  !> Where the nodes of a body are that comes: it has no strain there.
-  pure subroutine note_laid(group, displacement, laid)
-    type(group_t), intent(in) :: group
-    real(wp), intent(in) :: displacement(:, :)            !! (2, nnode), of no nodes where nothing moves [length]
-    real(wp), allocatable, intent(out) :: laid(:, :, :)   !! (2, node, element) [length]
-    integer :: e
-
-    if (size(displacement, 2) == 0) return
-    allocate (laid(2, size(group%connectivity, 1), size(group%connectivity, 2)))
-    do e = 1, size(laid, 3)
-      laid(:, :, e) = displacement(:, group%connectivity(:, e))
-    end do
-  end subroutine note_laid
-
-  !> Bodies that come fit those that were there: displacements of their nodes are the means of their neighbours' (Laplace's equation
-  !> on the elements, by Jacobi's iterations), those of shared nodes and of supports are given.
-  pure subroutine place_new_nodes(scene, was_there, displacement)
-    type(scene_t), intent(in) :: scene
-    logical, intent(in) :: was_there(:)             !! (nnode)
-    real(wp), intent(inout) :: displacement(:, :)   !! (2, nnode) [length]
-    logical :: given(2, size(was_there)), comes(size(was_there))
-    real(wp) :: total(2, size(was_there)), mean(2), change
-    integer :: number(size(was_there)), g, e, k, sweep
-
-    comes = .false.
-    do g = 1, size(scene%groups)
-      if (is_solid(scene%groups(g))) comes([scene%groups(g)%connectivity]) = .true.
-    end do
-    comes = comes .and. .not. was_there
-    if (.not. any(comes)) return
-    given = spread(.not. comes, 1, 2)
-    do k = 1, size(scene%fixations)
-      if (scene%fixations(k)%field == displacement_field) given(scene%fixations(k)%component, scene%fixations(k)%nodes) = .true.
-    end do
-    do sweep = 1, most_sweeps
-      total = 0
-      number = 0
-      do g = 1, size(scene%groups)
-        if (.not. is_solid(scene%groups(g))) cycle
-        do e = 1, size(scene%groups(g)%connectivity, 2)
-          associate (nodes => scene%groups(g)%connectivity(:, e))
-            if (.not. any(comes(nodes))) cycle
-            mean = sum(displacement(:, nodes), 2)/size(nodes)
-            total(:, nodes) = total(:, nodes) + spread(mean, 2, size(nodes))
-            number(nodes) = number(nodes) + 1
-          end associate
-        end do
-      end do
-      total = merge(displacement, total/spread(max(number, 1), 1, 2), given)
-      change = maxval(abs(total - displacement))
-      displacement = total
-      if (.not. change > smooth*maxval(abs(displacement))) return
-    end do
-  end subroutine place_new_nodes
-
   !> The group of the operation before that goes on as this one, 0 where there is none.
   pure function same_group(old, before, new, fresh, g) result(k)
     type(scene_t), intent(in) :: old, new
@@ -263,33 +202,6 @@ contains
 
     place = solution%fields(pilot_field)%value(:, die)
   end function place_of
-
-  !> Does a die stand at one place, but for round-off of its motion?
-  pure function same_place(die, one, other) result(same)
-    type(die_t), intent(in) :: die
-    real(wp), intent(in) :: one(3), other(3)   !! x, y, angle [length], [length], [rad]
-    logical :: same
-    real(wp) :: size_of_die
-
-    size_of_die = max(maxval(abs(die%pieces)), maxval(abs(one(1:2))))
-    same = all(abs(one - other) <= round_off*[size_of_die, size_of_die, 1.0_wp])
-  end function same_place
-
-  !> Two dies of one name and one shape.
-  pure function same_die(a, b) result(same)
-    type(die_t), intent(in) :: a, b
-    logical :: same
-
-    same = a%name == b%name .and. (is_deformable(a) .eqv. is_deformable(b))
-    if (.not. same) return
-    if (is_deformable(a)) then
-      same = all(shape(a%nodes) == shape(b%nodes))
-      if (same) same = all(a%nodes == b%nodes)
-    else
-      same = all(shape(a%pieces) == shape(b%pieces))
-      if (same) same = .not. any(abs(a%pieces - b%pieces) > 0)
-    end if
-  end function same_die
 
   !> The state of points, variable by variable; one that the operation before did not have begins at its declared value.
   pure subroutine take_state(old, before, new, after)

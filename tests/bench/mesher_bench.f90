@@ -11,12 +11,12 @@ program mesher_bench
   use body_outlines, only: outline_t
   use boundary_curves, only: boundary_curve_t, close_boundary, kind_end
   use contour_needs, only: geometry_settings_t, needs_of_boundary
+  use corrected_contours, only: contour_options_t
   use errors, only: error_t
   use gmsh_call, only: find_gmsh
   use kinds, only: pi, wp
   use mesh_quality, only: mesh_shape
   use outline_mesh, only: mesh_outlines, mesher_t
-  use part_contour, only: contour_options_t
   use remeshing, only: least_angle, ncriteria, scaled_jacobian
   use size_field, only: need_t, set_up_sizes, size_field_t, size_limits_t
   use zone_mesh, only: mesh_settings_t, new_mesh_t

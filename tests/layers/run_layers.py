@@ -53,7 +53,8 @@ ROOMS = ["remdata", *(f"remdata/{room}" for room in ("transfer", "free_mesh", "q
 CYCLE, CYCLE_ON = "remdata/cycle", ("store", "model", "base")
 
 # What stands in remdata/ itself: the driver and what it reads and reports.
-DRIVER = {"main", "remesh_scene", "mesh_choice", "remesh_options", "remesh_facts", "remesh_report", "checkpoint_summary", "solver_blas"}
+DRIVER = {"main", "remesh_scene", "remesh_cuts", "mesh_choice", "remesh_options", "remesh_facts", "remesh_report", "checkpoint_summary",
+          "solver_blas"}
 
 # Modules that come from the compiler or a library.
 EXTERNAL = {"iso_fortran_env", "iso_c_binding", "ieee_arithmetic", "ieee_exceptions", "ieee_features", "omp_lib", "hdf5"}

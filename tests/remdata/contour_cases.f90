@@ -4,12 +4,12 @@ module contour_cases
   use boundary_curves, only: boundary_curve_t
   use contact_contour, only: find_contact_ends
   use contact_ends, only: contact_end_t
-  use contact_intervals, only: side_point_t
-  use contour_assembly, only: contact_t
+  use contour_contacts, only: contact_t
+  use corrected_contours, only: contour_t
   use dies, only: die_t, finish_die, present_die
   use fields, only: displacement_field, mechanical_fields, pilot_field
   use kinds, only: wp
-  use part_contour, only: contour_t
+  use loop_intervals, only: side_point_t
   use quadrature, only: line_rule, rule_of_number
   use scene, only: axisymmetric, group_t, plane_strain, role_body, role_contact, scene_t
   use shape_functions, only: line3

@@ -2,8 +2,8 @@
 module cut_cases
   use arcs, only: straight
   use boundary_curves, only: close_boundary, kind_corner
+  use corrected_contours, only: contour_t
   use kinds, only: wp
-  use part_contour, only: contour_t
   implicit none
   private
   public :: bend, polygon, rectangle

@@ -3,11 +3,11 @@ module part_cases
   use block_mesh, only: block_t, side_parabola
   use contact_ends, only: contact_end_t
   use contour_cases, only: add_block, add_contact, add_die, begin_scene, box, ends_of, polyline, start, touch
+  use corrected_contours, only: contour_report_t, contour_t
   use dies, only: die_t, finish_die
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
   use loads, only: fixation_t
-  use part_contour, only: contour_report_t, contour_t
   use scene, only: scene_t
   use solution, only: solution_t
   implicit none
