@@ -151,6 +151,9 @@ contains
     call add_text(lines, '  largest penetration at points of contact ' &
                   //depth(scene, solution%worst_penetration, solution%worst_penetration_ratio) &
                   //'; between them too '//depth(scene, solution%worst_sample, solution%worst_sample_ratio))
+    if (solution%penalty_share > 1) &
+      call add_text(lines, '  elastic bodies bear much at contact, and press with '//to_text(solution%penalty_share, 3) &
+                    //' times the penalties of PENETR')
     call warn(lines, 'points of contact are deeper in a die than allowed', advice_at_points(scene, solution))
     call warn(lines, 'sides between points of contact are deeper in a die than allowed', advice_between_points(scene, solution))
     if (len(sides_that_span(scene, solution)) > 0) call add_text(lines, '  '//sides_that_span(scene, solution))

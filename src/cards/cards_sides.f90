@@ -5,12 +5,13 @@ module cards_sides
   use cards_laws, only: read_material
   use contact_penalties, only: tangential_share
   use contact_rule, only: rule_on_body, rule_on_die
+  use contact_stiffness, only: find_stiffness
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use dies, only: is_deformable
   use kinds, only: wp
-  use law_api, only: contact_law, find_parameter, is_complete, law_of_material
+  use law_api, only: contact_law, find_parameter, law_of_material
   use quadrature, only: rule_along, rule_control, rule_of_number, rule_t
   use scene, only: group_t
   use scene_draft, only: close_card, draft_t, find_elem
@@ -81,7 +82,7 @@ contains
       deallocate (group%variables)
       call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
                                                        draft%scene%plane_state, group%variables)
-      group%modulus = modulus_behind(draft, group%connectivity)
+      call find_stiffness(draft, group)
       group%tangential_share = tangential_share(draft%laws(law), draft%scene%materials(group%material))
       call append_group(draft, group, cursor%where())
     end do
@@ -272,28 +273,5 @@ contains
       end associate
     end do
   end subroutine refuse_bodies_without_flow
-
-  !> Largest Young's modulus of the bodies that the sides belong to, at the first temperature of their cards.
-  pure function modulus_behind(draft, sides) result(modulus)
-    type(draft_t), intent(in) :: draft
-    integer, intent(in) :: sides(:, :)
-    real(wp) :: modulus
-    integer :: k
-    real(wp) :: young, poisson, temperature
-
-    modulus = 0
-    do k = 1, size(sides, 2)
-      associate (material => draft%scene%materials(draft%owner(sides(2, k))))
-        if (material%law_id == 0) cycle
-        associate (law => draft%laws(material%law_id))
-          if (.not. associated(law%elastic) .or. .not. is_complete(law, material)) cycle
-          temperature = 0
-          if (allocated(material%temperatures)) temperature = material%temperatures(1)
-          call law%elastic(material, temperature, young, poisson)
-        end associate
-        modulus = max(modulus, young)
-      end associate
-    end do
-  end function modulus_behind
 
 end module cards_sides

@@ -154,7 +154,7 @@ contains
 
     given = penalties_of_card(material)
     penalty(1) = given%normal
-    if (.not. penalty(1) > 0) penalty(1) = light*usual_bearing*group%modulus/(given%allowed*side)
+    if (.not. penalty(1) > 0) penalty(1) = min(light, group%most_share)*usual_bearing*group%modulus/(given%allowed*side)
     penalty(2) = given%tangential
     if (.not. penalty(2) > 0) penalty(2) = group%tangential_share*penalty(1)
   end function penalties

@@ -64,8 +64,10 @@ module scene
     integer :: die = 0
     !> Place among the groups that face a deformable die, 0 for others.
     integer :: pairs = 0
-    !> Young's modulus of the bodies behind the sides of a contact [stress].
+    !> Young's modulus of the body behind the sides of a contact, or of that behind the die where it is softer [stress].
     real(wp) :: modulus = 0.0_wp
+    !> Most that penalties of a contact which follow from an allowed penetration are raised to, over those of it [-].
+    real(wp) :: most_share = 1.0_wp
     !> Tangential penalty over the normal one of a contact, where the card of its law does not give it [-].
     real(wp) :: tangential_share = 0.0_wp
     !> Component of the pilot that a spring holds, and its stiffness [force/length, or moment per radian].

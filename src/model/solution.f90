@@ -50,7 +50,7 @@ module solution
     !> Lengths of late steps, and of those of a mesh that is new.
     type(probation_t) :: probation
     !> Share of the penalties that follow from an allowed penetration with which contact presses: less than 1 where it bears little
-    !> and could not be found with the whole (soft_penalties) [-].
+    !> and could not be found with the whole, more where an elastic body bears much (soft_penalties) [-].
     real(wp) :: penalty_share = 1.0_wp
     !> Viscous force over velocity and volume in the step to come, 0 where it is not damped (damping) [force time/length^4].
     real(wp) :: damping = 0.0_wp

@@ -34,6 +34,7 @@ contains
     call visitor%derived('is_spring', of_the_deck)
     call visitor%derived('option', of_the_deck)
     call visitor%derived('modulus', 'the solver finds it from the bodies behind the sides')
+    call visitor%derived('most_share', 'the solver finds it from the bodies behind the sides')
     call visitor%derived('tangential_share', 'the solver finds it from the law')
     call visitor%derived('component', of_the_deck)
     call visitor%derived('stiffness', of_the_deck)

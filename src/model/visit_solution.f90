@@ -33,7 +33,7 @@ contains
     call visitor%member('next_step', self%next_step, kept, 'time', low=0.0_wp)
     call visitor%member('unbalanced', self%unbalanced, recomputed)
     call visitor%member('between_saves', self%between_saves, recomputed)
-    call visitor%member('penalty_share', self%penalty_share, kept, '-', low=0.0_wp, high=1.0_wp)
+    call visitor%member('penalty_share', self%penalty_share, kept, '-', low=0.0_wp)
     call visitor%member('damping', self%damping, kept, 'force time/length^4', low=0.0_wp)
     call visitor%member('damping_bound', self%damping_bound, kept, 'energy', low=0.0_wp)
     call visitor%member('iterations', self%iterations, kept, low=0)

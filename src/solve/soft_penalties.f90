@@ -1,4 +1,4 @@
-!> Softer penalties where contact bears little.
+!> Softer penalties where contact bears little, stiffer ones where it bears much.
 !>
 !> A penalty that follows from an allowed penetration makes that depth under a hundredth of Young's modulus, as forming dies have
 !> it. A sheet bent over rollers presses with a ten-thousandth of that: its penalties are far stiffer than the allowed depth asks
@@ -8,7 +8,11 @@
 !> Computational Contact Mechanics, 2nd ed., Springer 2006). So where a step fails while contact changes, penalties are lowered to
 !> a share with which the pressures of now make a tenth of the allowed depth. They are raised, before a step is accepted, where the
 !> depth is more than a third of the allowed, or more than a small part of the way that the part has made: at its first touch
-!> little depth is much of the force. A penalty that the deck states is not touched.
+!> little depth is much of the force.
+!>
+!> An elastic body bears more than that hundredth: rubber that is shut in, many times its modulus. Before a step is accepted in which
+!> it is deeper than allowed, its penalties are raised to what makes a third of that, up to a pressure of a hundred times the
+!> modulus (contact_stiffness), but where multipliers (AUGMENT) take the depth away. A penalty that the deck states is not touched.
 module soft_penalties
   use contact_penalties, only: penalties_of_card, penalties_t
   use contact_point, only: usual_bearing
@@ -27,6 +31,8 @@ module soft_penalties
 
   !> Depth over the allowed that a share is chosen for, and the one above which it is raised.
   real(wp), parameter :: aim = 0.1_wp, limit = 0.3_wp
+  !> The same for shares that are more than the whole.
+  real(wp), parameter :: aim_above = 0.3_wp, limit_above = 1.0_wp
   !> Depth over the largest displacement of the bodies that is aimed at, and above which the share is raised.
   real(wp), parameter :: aim_of_way = 5.0e-4_wp, limit_of_way = 1.0e-3_wp
   !> The least share; the penalties of a share are lowered where they become so much less.
@@ -62,9 +68,12 @@ contains
     real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
 
     press_too_softly = .false.
-    if (.not. solution%penalty_share < 1) return
-    press_too_softly = bearing(scene, solution, .true.) > limit*solution%penalty_share &
-                       .or. depth(scene, solution) > limit_of_way*way(dofs, solution, du)
+    if (solution%penalty_share < 1) then
+      press_too_softly = bearing(scene, solution, .true.) > limit*solution%penalty_share &
+                         .or. depth(scene, solution) > limit_of_way*way(dofs, solution, du)
+    else if (most_share(scene) > solution%penalty_share) then
+      press_too_softly = bearing(scene, solution, .true., above=solution%penalty_share) > limit_above*solution%penalty_share
+    end if
   end function press_too_softly
 
   !> The share that depth and pressures of the trial state ask for.
@@ -76,6 +85,10 @@ contains
     real(wp) :: share, made
 
     share = solution%penalty_share
+    if (.not. share < 1) then
+      solution%penalty_share = min(most_share(scene), bearing(scene, solution, .true., above=share)/aim_above)
+      return
+    end if
     made = way(dofs, solution, du)
     if (made > 0) share = share*max(1.0_wp, depth(scene, solution)/(aim_of_way*made))
     solution%penalty_share = min(1.0_wp, max(share, bearing(scene, solution, .true.)/aim))
@@ -101,17 +114,46 @@ contains
     follows = .not. given%normal > 0
   end function follows
 
+  !> Largest share that a group may be raised to.
+  pure function most_share(scene) result(most)
+    type(scene_t), intent(in) :: scene
+    real(wp) :: most
+    integer :: g
+
+    most = 1
+    do g = 1, size(scene%groups)
+      if (may_rise(scene, g, 1.0_wp)) most = max(most, scene%groups(g)%most_share)
+    end do
+  end function most_share
+
+  !> The penalties of a group may be raised above a share of one or more.
+  pure logical function may_rise(scene, g, share)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    real(wp), intent(in) :: share
+    type(penalties_t) :: given
+
+    may_rise = follows(scene, g)
+    if (.not. may_rise) return
+    given = penalties_of_card(scene%materials(scene%groups(g)%material))
+    may_rise = scene%groups(g)%most_share > share .and. given%augmentations == 0
+  end function may_rise
+
   !> Largest pressure of such contact, or tension of glue, over that which makes the allowed penetration with the whole penalties.
-  pure function bearing(scene, solution, trial) result(largest)
+  pure function bearing(scene, solution, trial, above) result(largest)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    logical, intent(in) :: trial   !! of the trial state, otherwise of the committed one
+    logical, intent(in) :: trial             !! of the trial state, otherwise of the committed one
+    real(wp), intent(in), optional :: above  !! where penalties may be raised above this share alone
     real(wp) :: largest
     integer :: g
 
     largest = 0
     do g = 1, size(scene%groups)
       if (.not. follows(scene, g)) cycle
+      if (present(above)) then
+        if (.not. may_rise(scene, g, above)) cycle
+      end if
       if (trial) then
         call find_largest(solution%groups(g)%trial)
       else

@@ -92,6 +92,27 @@ def under_a_bead(checks):
     return max(abs(forces[0]/forces[1] - 1), abs(forces[2]/forces[3] - 1))
 
 
+def sheet_on_rubber(checks):
+    """A stiff sheet that a punch presses into a pad a ten-thousandth to a hundred-thousandth as stiff, and which nothing else carries:
+    the force, and the depth over the allowed, whichever of the two faces the other. Where the sheet faced the pad no step was found."""
+    worst = 0.0
+    for k, (state, pad, thick, radius, friction, travel) in enumerate((("PLSTN", 2, 2, 4, 0.2, 2.0), ("AXISYM", 2, 1, 4, 0.0, 4.0),
+                                                                       ("PLSTN", 20, 1, 12, 0.1, 2.0))):
+        forces = []
+        for faces, faced in (("sheet 1", "pad 3"), ("pad 3", "sheet 1")):
+            run = checks.run(f"on-rubber-{k}-{faces[:3]}", deck(
+                state, "LOG", f"BLOCK sheet PL8LS 4 m\n 0. 20. 40. 20. 40. {20 + thick} 0. {20 + thick}\n 40 1. 3 1.\n"
+                "BLOCK pad PL8LS 9 rubber MEAN\n 0. 0. 60. 0. 60. 20. 0. 20.\n 30 1. 8 1.\n",
+                f"LAW m EPLA\n 200000. 0.3\n SWIFT 1500. 0.01 0.2\nLAW rubber ELA\n {pad} 0.45\nLAW k COUL2D\n PENETR 5.E-3 PHI {friction}\n",
+                f"DIE punch PILOT 0. {20 + thick}\n SEGM {radius} 90. {radius} {20 + thick + radius}\n"
+                f" ARC {radius} {20 + thick + radius} 0. {20 + thick} -{radius} {20 + thick + radius} 1.E-4\n"
+                f"DIE other SIDES {faced}\nCNT2D sheet 3 punch k\nCNT2D {faces} other k\n"
+                f"FIXED pad 1 XY\nFIXED pad 4 X\nFIXED sheet 4 X\nMOVE punch Y go\nLIC go\n 0. 0. 1. -{travel}\n", "STRAT 0.005 1.E-6 0.05 5 3"))
+            forces.append(abs(run.history["force_y_punch"][-1]))
+        worst = max(worst, abs(forces[0]/forces[1] - 1))
+    return worst
+
+
 def creeping_strip_let_go(checks):
     """A strip without elastic limit, bent between rollers and let go by the upper one: nothing holds it while it creeps back, and
     it does so in few iterations however slender it is. The die that goes back has no force."""
@@ -137,4 +158,5 @@ CASES = (Case("free billets under dies that lean", free_billets, 1e-3), Case("fr
          Case("creeping strip let go", creeping_strip_let_go, 1e-9), Case("heated and free", heated_free, 1e-5),
          Case("strip under a bead", under_a_bead, 0.1),
          Case("sheets on rollers", sheets_on_rollers, 5e-4),
+         Case("stiff sheet on rubber", sheet_on_rubber, 1e-2),
          Case("hook past a ledge", hook, 1e-2))
