@@ -10,8 +10,8 @@
 !> depth is more than a third of the allowed, or more than a small part of the way that the part has made: at its first touch
 !> little depth is much of the force.
 !>
-!> An elastic body bears more than that hundredth: rubber that is shut in, many times its modulus. Before a step is accepted in which
-!> it is deeper than allowed, its penalties are raised to what makes a third of that, up to a pressure of a hundred times the
+!> An elastic body bears more than that hundredth: rubber that is shut in, many times its modulus. Before a step is accepted in
+!> which it is deeper than allowed, its penalties are raised to what makes a third of that, up to a pressure of a hundred times the
 !> modulus (contact_stiffness), but where multipliers (AUGMENT) take the depth away. A penalty that the deck states is not touched.
 module soft_penalties
   use contact_penalties, only: penalties_of_card, penalties_t
