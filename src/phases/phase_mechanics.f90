@@ -169,8 +169,8 @@ contains
     call hand_over(steel, formed, now, temperature, hardening)
   end subroutine carry_hardening
 
-  !> What phases that shrink hand over to those that grow. Fractions that are none but for round-off, or for a small share of an error
-  !> (path_stress), may be below 0: they hold no hardening, and a phase that is not there at the end gets none.
+  !> What phases that shrink hand over to those that grow. Fractions that are none but for round-off, or for a small share of an
+  !> error (path_stress), may be below 0: they hold no hardening, and a phase that is not there at the end gets none.
   pure subroutine hand_over(steel, before, now, temperature, hardening)
     type(steel_t), intent(in) :: steel
     real(wp), intent(in) :: before(:), now(:)   !! (phase_count) [-]
