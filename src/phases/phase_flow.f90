@@ -106,23 +106,25 @@ contains
     call hand_over(steel, formed, now, temperature, hardening)
   end subroutine carry_hardening
 
-  !> What phases that shrink hand over to those that grow.
+  !> What phases that shrink hand over to those that grow. Fractions that are none but for round-off, or for a small share of an
+  !> error (path_stress), may be below 0: they hold no hardening, and a phase that is not there at the end gets none.
   pure subroutine hand_over(steel, before, now, temperature, hardening)
     type(steel_t), intent(in) :: steel
     real(wp), intent(in) :: before(:), now(:)   !! (phase_count) [-]
     real(wp), intent(in) :: temperature         !! [degC]
     real(wp), intent(inout) :: hardening(:)     !! (phase_count) [-]
-    real(wp) :: gone(phase_count), given, theta
+    real(wp) :: gone(phase_count), given, theta, kept
     integer :: i
 
     gone = max(0.0_wp, before - now)
     if (.not. sum(gone) > 0) return
     given = dot_product(gone, hardening)/sum(gone)
     do i = 1, phase_count
-      if (.not. now(i) > before(i)) cycle
+      kept = max(before(i), 0.0_wp)
+      if (.not. now(i) > kept) cycle
       theta = 1
       if (is_given(steel%properties(prop_memory, i))) theta = curve_at(steel%properties(prop_memory, i), temperature)
-      hardening(i) = (before(i)*hardening(i) + (now(i) - before(i))*theta*given)/now(i)
+      hardening(i) = (kept*hardening(i) + (now(i) - kept)*theta*given)/now(i)
     end do
   end subroutine hand_over
 

@@ -204,7 +204,7 @@ contains
       if (.not. (allowed > 0 .and. abs(step%stress_error) > 0)) return
       before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record)
       change = abs(step%stress - record%stress)*dt/(record%pending_time + dt)
-      least = max(strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time + dt))
+      least = max(strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time + dt), (1 - step%left)*allowed)
       room = max(allowed - max(before, 0.0_wp), least)
       next = max(allowed - step%left*max(before + abs(step%stress_error), 0.0_wp), least)
       if (abs(step%stress_error) > room) next = room
