@@ -193,8 +193,8 @@ contains
 
   !> What a step adds goes with the square of its length. An error against that of the steps before has all the room.
   !>
-  !> What was above the bound at the start, as where the stress has fallen, is not paid for by this step: shorter steps do not forget
-  !> it sooner. An error counts as at the bound then, so that steps add what is forgotten on the way.
+  !> What was above the bound at the start, as where the stress has fallen, is not paid for by this step: shorter steps do not
+  !> forget it sooner. An error counts as at the bound then, so that steps add what is forgotten on the way.
   subroutine bound_stress(strategy, solution, dt, outcome)
     type(strategy_t), intent(in) :: strategy
     type(solution_t), intent(in) :: solution
