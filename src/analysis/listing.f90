@@ -14,7 +14,7 @@ module listing
   use text, only: string_t, to_text
   implicit none
   private
-  public :: listing_t, open_listing, close_listing, show_progress, end_progress
+  public :: listing_t, open_listing, close_listing, share_done, show_progress, end_progress, steps_left
   public :: list_lines, list_resumed, list_balance, list_step, list_cutback, list_event, list_note, list_softer_contact
 
   type :: listing_t
@@ -22,13 +22,16 @@ module listing
     !> Progress is shown: over and over in one line of a terminal, or in a new line each time.
     logical :: live = .false., terminal = .false.
     real(wp) :: started = 0.0_wp, shown = 0.0_wp
-    !> Share of the scene already done when the program started (a resumed run).
+    !> Share of the scene already done when the program started (a resumed run), and steps shown since.
     real(wp) :: start_share = 0.0_wp
+    integer :: steps = 0
   end type listing_t
 
   integer, parameter :: standard_output = 1
   !> Seconds between two progress lines, on a terminal and elsewhere.
   real(wp), parameter :: refresh = 0.2_wp, refresh_file = 60.0_wp
+  !> Lengths of steps that differ by less than this share are the same.
+  real(wp), parameter :: same = 1.0e-2_wp
 
 contains
 
@@ -230,10 +233,11 @@ contains
 
     if (.not. listing%live) return
     now = wall_seconds()
-    share = solution%time/scene%strategy%end_time
+    share = share_done(scene, solution%time)
+    listing%steps = listing%steps + 1
     if (listing%shown > 0 .and. now - listing%shown < merge(refresh, refresh_file, listing%terminal) .and. share < 1) return
     listing%shown = now
-    left = (now - listing%started)*(1 - share)/max(share - listing%start_share, tiny(1.0_wp))
+    left = (now - listing%started)/listing%steps*steps_left(scene, solution, (share - listing%start_share)/listing%steps)
     line = 'step '//to_text(solution%step)//'  time '//to_text(solution%time, 4)//'  iterations '//to_text(iterations) &
            //'  '//to_text(100*share, 3)//' %  '//to_text(now - listing%started, 3)//' s, left ' &
            //to_text(min(left, 1.0e9_wp), 3)//' s'
@@ -246,6 +250,44 @@ contains
     ! the output cannot be written
     if (allocated(unseen)) listing%live = .false.
   end subroutine show_progress
+
+  !> Steps up to the end. Steps that have been shorter than the last one grow on as the next one does, up to the largest; others go
+  !> on as they were in the mean.
+  pure function steps_left(scene, solution, mean) result(steps)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: mean   !! length of the steps so far, as a share of the scene
+    real(wp) :: steps
+    real(wp) :: length, way, growth
+
+    associate (strategy => scene%strategy)
+      way = max(strategy%end_time - solution%time, 0.0_wp)
+      length = mean*(strategy%end_time - strategy%begins)
+      steps = way/max(length, tiny(1.0_wp))
+      if (solution%last_step < (1 - same)*length) return
+      length = max(length, solution%last_step)
+      growth = min(solution%next_step, strategy%largest_step)/length
+      steps = 0
+      if (growth > 1 + same) then
+        do while (way > 0 .and. length*growth < strategy%largest_step)
+          length = length*growth
+          way = way - length
+          steps = steps + 1
+        end do
+        length = strategy%largest_step
+      end if
+      steps = steps + max(way, 0.0_wp)/length
+    end associate
+  end function steps_left
+
+  !> Share of the scene, or of the present operation, that is done.
+  pure function share_done(scene, time) result(share)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: time   !! [time]
+    real(wp) :: share
+
+    share = (time - scene%strategy%begins)/(scene%strategy%end_time - scene%strategy%begins)
+  end function share_done
 
   !> Leave the progress line.
   subroutine end_progress(listing)

@@ -6,7 +6,7 @@ module run_beginning
   use deck_check, only: as_warnings, look_at_deck
   use errors, only: error_t
   use kinds, only: wp
-  use listing, only: list_lines, list_resumed, open_listing
+  use listing, only: list_lines, list_resumed, open_listing, share_done
   use memory_limits, only: require_memory
   use operation_outlook, only: look_at_beginning, warn_of_overlap
   use results, only: forget_failure
@@ -70,7 +70,7 @@ contains
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
 
-    call open_listing(run%stem//'.log', run%resume, options%quiet, options%progress, solution%time/scene%strategy%end_time, &
+    call open_listing(run%stem//'.log', run%resume, options%quiet, options%progress, share_done(scene, solution%time), &
                       run%listing, error)
     if (.not. allocated(error)) call remove_file(join_path(run%folder, 'summary.json'), error)
     if (.not. allocated(error) .and. scene%operation > 0) &

@@ -30,6 +30,7 @@ module run_ending
   use summary_table, only: summary_lines
   use system, only: join_path
   use text, only: add_text, string_t, to_text
+  use unsettled_contact, only: warn_of_unsettled_contact
   implicit none
   private
   public :: end_run
@@ -90,6 +91,7 @@ contains
     call warn_of_confinement(scene, solution, warnings)
     words = narrow_words(scene, solution)
     if (len(words) > 0) call add_text(warnings, words)
+    call warn_of_unsettled_contact(scene, solution, warnings)
     call warn_of_passed_planes(scene, solution, warnings)
     if (solution%unstable_steps > 0) call add_text(warnings, 'equilibria are not stable in '//to_text(solution%unstable_steps) &
       //' of '//to_text(solution%step)//' steps, first at time '//to_text(solution%unstable_from, 6)//': a perfect part stays ' &

@@ -55,8 +55,6 @@ module run_record
     logical :: force_agreed = .false.
     !> The note on a spurious mode has been given.
     logical :: spurious_reported = .false.
-    !> So has that on heat and contact that do not agree.
-    logical :: unsettled_reported = .false.
     !> The first of the steps that are damped now; 0 where none is.
     integer :: damped_from = 0
     !> Of a deck with ACCURACY, but for its pilots.

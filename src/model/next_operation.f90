@@ -77,6 +77,8 @@ contains
     after%largest_force = 0
     after%confinement = fresh%confinement
     after%narrow = fresh%narrow
+    after%unsettled_steps = 0
+    after%unsettled_share = 0
     after%damping = 0
     after%damping_bound = after%work%damping
     after%friction_apart = 0

@@ -235,17 +235,20 @@ contains
 
   !> What is left at the end of a step of the errors of the stress before it. Steps since the last estimate are taken to err
   !> in the mean of that and this one, as the squares of their lengths, but by no more than this one where it is shorter.
-  pure function stress_before(step, dt, record) result(error)
+  pure function stress_before(step, dt, record, most) result(error)
     type(path_step_t), intent(in) :: step
     real(wp), intent(in) :: dt   !! its length [time]
     type(path_record_t), intent(in) :: record
+    real(wp), intent(in), optional :: most   !! of the error at the last estimate that counts [energy^0.5]
     real(wp) :: error   !! [energy^0.5]
+    real(wp) :: first, length
 
-    real(wp) :: length
+    first = record%stress_error
+    if (present(most)) first = sign(min(abs(first), most), first)
 
     length = dt
     if (record%pending_time > 0) length = max(dt, record%pending_square/record%pending_time)
-    error = step%left*(step%left**(record%pending_time/dt)*record%stress_error &
+    error = step%left*(step%left**(record%pending_time/dt)*first &
                        + 0.5_wp*(record%stress_rate + step%stress_error/length**2)*record%pending_square)
   end function stress_before
 

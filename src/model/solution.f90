@@ -91,6 +91,10 @@ module solution
     !> Steps whose equilibrium is not stable (stability), and the end of the first of them [time].
     integer :: unstable_steps = 0
     real(wp) :: unstable_from = 0.0_wp
+    !> Steps of the operation in which heat and contact do not agree, and the largest share of the heat that is another then
+    !> (unsettled_contact).
+    integer :: unsettled_steps = 0
+    real(wp) :: unsettled_share = 0.0_wp
     !> By how much fractions of phases have left [0, 1], or their sum 1.
     real(wp) :: worst_fraction = 0.0_wp
     !> Largest share of an element that should have become austenite on heating, of a steel without its kinetics (heated_steels).

@@ -58,6 +58,8 @@ contains
     call visitor%member('stays_unstable', self%stays_unstable, kept)
     call visitor%member('unstable_steps', self%unstable_steps, kept, low=0)
     call visitor%member('unstable_from', self%unstable_from, kept, 'time')
+    call visitor%member('unsettled_steps', self%unsettled_steps, kept, low=0)
+    call visitor%member('unsettled_share', self%unsettled_share, kept, '-', low=0.0_wp)
     call visitor%member('worst_fraction', self%worst_fraction, kept, '-', low=0.0_wp)
     call visitor%member('missing_austenite', self%missing_austenite, kept, '-', low=0.0_wp)
     call visitor%member('held_growth', self%held_growth, kept, '-', low=0.0_wp, high=1.0_wp)

@@ -25,7 +25,7 @@ module path_bounds
   use text, only: to_text
   implicit none
   private
-  public :: judge_path
+  public :: bound_stress, judge_path
 
   !> Steps aim at this share of what is allowed, so that few are made in vain.
   real(wp), parameter :: aim = 0.7_wp
@@ -192,21 +192,25 @@ contains
   end subroutine bound_motion
 
   !> What a step adds goes with the square of its length. An error against that of the steps before has all the room.
+  !>
+  !> What was above the bound at the start, as where the stress has fallen, is not paid for by this step: shorter steps do not
+  !> forget it sooner. An error counts as at the bound then, so that steps add what is forgotten on the way.
   subroutine bound_stress(strategy, solution, dt, outcome)
     type(strategy_t), intent(in) :: strategy
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt   !! [time]
     type(outcome_t), intent(inout) :: outcome
-    real(wp) :: allowed, change, least, before, room, next
+    real(wp) :: allowed, at_start, change, least, before, room, next
 
     associate (step => outcome%path, record => solution%path)
       allowed = strategy%rate_bound*bound_scale(record, step%stress, step%flow)
       if (.not. (allowed > 0 .and. abs(step%stress_error) > 0)) return
-      before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record)
+      at_start = strategy%rate_bound*bound_scale(record, record%stress, record%flow)
+      before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record, most=at_start)
       change = abs(step%stress - record%stress)*dt/(record%pending_time + dt)
-      least = max(strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time + dt), (1 - step%left)*allowed)
+      least = max(strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time + dt))
       room = max(allowed - max(before, 0.0_wp), least)
-      next = max(allowed - step%left*max(before + abs(step%stress_error), 0.0_wp), least)
+      next = max(allowed - step%left*min(max(before + abs(step%stress_error), 0.0_wp), allowed), least)
       if (abs(step%stress_error) > room) next = room
       call bound(strategy, record, dt, room/allowed, sqrt(aim*next/abs(step%stress_error)), of_stress, 'stress', outcome)
     end associate

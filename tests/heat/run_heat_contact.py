@@ -502,7 +502,10 @@ def shrinks(checks):
     run = Run(checks, "shrinks-jumps-ONCE", SHRINKS.format(touch=1., solve="ONCE"))
     if run.ok:
         with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
-            told = json.load(file)["accuracy"]["heat"]["largest"]
+            whole = json.load(file)
+        told = whole["accuracy"]["heat"]["largest"]
+        checks.that(any("do not agree" in warning["text"] for warning in whole["warnings"]), f"{run.name}: among the warnings of the summary",
+                    whole["warnings"])
         to_and_fro = np.ptp(run.history["t"][run.history["time"] > 250])
         checks.that("do not agree" in run.said and "let PRESS begin, at pressure 0" in run.said and told > to_and_fro/2,
                     f"{run.name}: told that temperatures go to and fro", (told, to_and_fro, run.said))
