@@ -21,6 +21,8 @@ module cards_sides
 
   !> Points of a side: Gauss, or at equal distances with the ends (negative).
   integer, parameter :: rules(10) = [2, 3, 4, -3, -5, -9, -17, -33, -65, -129]
+  !> A body that faces another one presses as if it were so many times stiffer than that at most.
+  real(wp), parameter :: bears = 10.0_wp
   character(len=*), parameter :: equal_distances = '-3, -5, -9, -17, -33, -65 or -129'
 
 contains
@@ -82,6 +84,8 @@ contains
       call draft%elems(group%elem_id)%variables(law_of_material(draft%laws(law), draft%scene%materials(group%material)), &
                                                        draft%scene%plane_state, group%variables)
       group%modulus = modulus_behind(draft, group%connectivity)
+      if (group%pairs > 0 .and. draft%mesh_sound) &
+        group%modulus = borne_by_other(group%modulus, modulus_behind(draft, draft%scene%dies(group%die)%nodes))
       group%tangential_share = tangential_share(draft%laws(law), draft%scene%materials(group%material))
       call append_group(draft, group, cursor%where())
     end do
@@ -295,5 +299,16 @@ contains
       end associate
     end do
   end function modulus_behind
+
+  !> The modulus of a body that faces another one, no more than `bears` times that of the other where this is known: what is so much
+  !> softer bears no more pressure than makes the allowed penetration, and a contact stiffer than both of them changes its forces by
+  !> round-off of the depth.
+  elemental function borne_by_other(own, other) result(modulus)
+    real(wp), intent(in) :: own, other   !! 0: not known [stress]
+    real(wp) :: modulus
+
+    modulus = own
+    if (other > 0) modulus = min(own, bears*other)
+  end function borne_by_other
 
 end module cards_sides

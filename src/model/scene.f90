@@ -64,7 +64,7 @@ module scene
     integer :: die = 0
     !> Place among the groups that face a deformable die, 0 for others.
     integer :: pairs = 0
-    !> Young's modulus of the bodies behind the sides of a contact [stress].
+    !> Young's modulus of the bodies behind the sides of a contact, at most a multiple of that behind a die of sides [stress].
     real(wp) :: modulus = 0.0_wp
     !> Tangential penalty over the normal one of a contact, where the card of its law does not give it [-].
     real(wp) :: tangential_share = 0.0_wp
