@@ -121,9 +121,9 @@ contains
 
   end subroutine refuse_loops
 
-  !> A die that ends on the axis of an axisymmetric scene goes on as its mirror image, by a piece: a point of the part on the axis
-  !> would else be now on its last piece and now beyond its end, by the round-off of x, or by the slope that a parabola has where
-  !> its arc has none.
+  !> A die that ends on the axis of an axisymmetric scene, and does not lie along it, goes on as its mirror image, by a piece: a
+  !> point of the part on the axis would else be now on its last piece and now beyond its end, by the round-off of x, or by
+  !> the slope that a parabola has where its arc has none.
   subroutine go_on_past_axis(die)
     type(die_t), intent(inout) :: die
     real(wp), allocatable :: pieces(:, :, :)
@@ -135,8 +135,10 @@ contains
     pilot = die%pilot
     axis = -pilot(1)
     pieces = die%pieces
-    if (is_on_axis(pieces(1, 3, n))) pieces = reshape([pieces, mirrored(pieces(:, :, n))], [2, 3, n + 1])
-    if (is_on_axis(pieces(1, 1, 1))) pieces = reshape([mirrored(pieces(:, :, 1)), pieces], [2, 3, size(pieces, 3) + 1])
+    if (is_on_axis(pieces(1, 3, n)) .and. .not. is_on_axis(pieces(1, 1, n))) &
+      pieces = reshape([pieces, mirrored(pieces(:, :, n))], [2, 3, n + 1])
+    if (is_on_axis(pieces(1, 1, 1)) .and. .not. is_on_axis(pieces(1, 3, 1))) &
+      pieces = reshape([mirrored(pieces(:, :, 1)), pieces], [2, 3, size(pieces, 3) + 1])
     if (size(pieces, 3) == n) return
     die%pieces = pieces
     die%pilot = 0
