@@ -11,6 +11,7 @@ module cards_dies
   use dies, only: die_t, finish_die
   use kinds, only: wp
   use piece_rows, only: ends_meet, piece_words, read_piece
+  use scene, only: axisymmetric
   use scene_draft, only: close_card, draft_t, words_of
   use text, only: string_t, to_text
   implicit none
@@ -19,6 +20,9 @@ module cards_dies
 
   !> Row of the card after those of pieces.
   integer, parameter :: fillet = 4
+
+  !> Distance from the axis over the size of a die that is round-off of points as cards give them [-].
+  real(wp), parameter :: round_off = 1.0e-9_wp
 
   !> State of reading the rows of a card.
   type :: die_rows_t
@@ -79,7 +83,10 @@ contains
       if (ends_meet(die%pieces)) die%pieces(:, 3, size(die%pieces, 3)) = die%pieces(:, 1, 1)
       call close_card(draft, cursor, deck%cards(i))
       call finish_die(die)
-      if (.not. cursor%failed()) call refuse_loops(deck%cards(i), die, rows, diagnostics)
+      if (.not. cursor%failed()) then
+        call refuse_loops(deck%cards(i), die, rows, diagnostics)
+        if (draft%scene%plane_state == axisymmetric) call go_on_past_axis(die)
+      end if
       dies(n) = die
     end do
     draft%scene%dies = dies(:n)
@@ -113,6 +120,49 @@ contains
     end function row_of
 
   end subroutine refuse_loops
+
+  !> A die that ends on the axis of an axisymmetric scene, and does not lie along it, goes on as its mirror image, by a piece: a
+  !> point of the part on the axis would else be now on its last piece and now beyond its end, by the round-off of x, or by
+  !> the slope that a parabola has where its arc has none.
+  subroutine go_on_past_axis(die)
+    type(die_t), intent(inout) :: die
+    real(wp), allocatable :: pieces(:, :, :)
+    real(wp) :: pilot(3), axis
+    integer :: n
+
+    n = size(die%pieces, 3)
+    if (die%closed .or. n == 0) return
+    pilot = die%pilot
+    axis = -pilot(1)
+    pieces = die%pieces
+    if (is_on_axis(pieces(1, 3, n)) .and. .not. is_on_axis(pieces(1, 1, n))) &
+      pieces = reshape([pieces, mirrored(pieces(:, :, n))], [2, 3, n + 1])
+    if (is_on_axis(pieces(1, 1, 1)) .and. .not. is_on_axis(pieces(1, 3, 1))) &
+      pieces = reshape([mirrored(pieces(:, :, 1)), pieces], [2, 3, size(pieces, 3) + 1])
+    if (size(pieces, 3) == n) return
+    die%pieces = pieces
+    die%pilot = 0
+    call finish_die(die)
+    die%pilot = pilot
+
+  contains
+
+    pure function is_on_axis(x) result(yes)
+      real(wp), intent(in) :: x   !! in the pilot's axes [length]
+      logical :: yes
+
+      yes = abs(x - axis) <= round_off*max(maxval(abs(die%pieces)), abs(pilot(1)))
+    end function is_on_axis
+
+    !> The mirror image of a piece, walked the other way.
+    pure function mirrored(piece) result(image)
+      real(wp), intent(in) :: piece(2, 3)   !! in the pilot's axes [length]
+      real(wp) :: image(2, 3)
+
+      image(1, :) = 2*axis - piece(1, 3:1:-1)
+      image(2, :) = piece(2, 3:1:-1)
+    end function mirrored
+  end subroutine go_on_past_axis
 
   subroutine read_pilot(cursor, pilot)
     type(cursor_t), intent(inout) :: cursor

@@ -7,7 +7,6 @@
 !> (soft_penalties).
 module contact_stiffness
   use contact_point, only: usual_bearing
-  use dies, only: die_t, is_deformable
   use kinds, only: wp
   use law_api, only: is_complete
   use scene, only: group_t
@@ -26,39 +25,38 @@ contains
     type(draft_t), intent(in) :: draft
     type(group_t), intent(inout) :: group
     real(wp) :: modulus
-    logical :: flows
+    logical :: flows, other_flows
 
     call find_modulus(draft, group%connectivity, group%modulus, flows)
-    associate (die => draft%scene%dies(group%die))
-      if (is_deformable(die)) then
-        call find_modulus(draft, die%nodes, modulus, flows, below=group%modulus)
-        group%modulus = min(group%modulus, modulus)
+    if (group%pairs > 0 .and. draft%mesh_sound) then
+      call find_modulus(draft, draft%scene%dies(group%die)%nodes, modulus, other_flows)
+      if (modulus > 0 .and. modulus <= group%modulus) then
+        group%modulus = modulus
+        flows = other_flows
       end if
-    end associate
+    end if
     group%most_share = 1
     if (.not. flows) group%most_share = most_borne/usual_bearing
   end subroutine find_stiffness
 
-  !> Largest Young's modulus of the bodies that sides belong to, at the first temperature of their cards, and whether one of them
-  !> flows; `flows` stays as it is where the modulus is not `below` another.
-  subroutine find_modulus(draft, sides, modulus, flows, below)
+  !> Largest Young's modulus of the bodies that sides belong to, at the first temperature of their cards, 0 where none is known; and
+  !> whether one of them flows.
+  subroutine find_modulus(draft, sides, modulus, flows)
     type(draft_t), intent(in) :: draft
-    integer, intent(in) :: sides(:, :)               !! (3, nside) nodes
-    real(wp), intent(out) :: modulus                 !! [stress]
-    logical, intent(inout) :: flows
-    real(wp), intent(in), optional :: below          !! [stress]
+    integer, intent(in) :: sides(:, :)   !! (3, nside) nodes
+    real(wp), intent(out) :: modulus     !! [stress]
+    logical, intent(out) :: flows
     real(wp) :: young, poisson, temperature
-    logical :: one_flows
     integer :: k
 
     modulus = 0
-    one_flows = .false.
+    flows = .false.
     do k = 1, size(sides, 2)
       associate (material => draft%scene%materials(draft%owner(sides(2, k))))
         if (material%law_id == 0) cycle
         associate (law => draft%laws(material%law_id))
           if (.not. associated(law%elastic) .or. .not. is_complete(law, material)) cycle
-          one_flows = one_flows .or. associated(law%flow_stress)
+          flows = flows .or. associated(law%flow_stress)
           temperature = 0
           if (allocated(material%temperatures)) temperature = material%temperatures(1)
           call law%elastic(material, temperature, young, poisson)
@@ -66,10 +64,6 @@ contains
         modulus = max(modulus, young)
       end associate
     end do
-    if (present(below)) then
-      if (modulus > below) return
-    end if
-    flows = one_flows
   end subroutine find_modulus
 
 end module contact_stiffness

@@ -143,7 +143,7 @@ contains
   end function dissipated
 
   !> Normal and tangential penalty of a group of contact: as given, or such that a pressure of one hundredth of the
-  !> body's modulus makes the allowed penetration, times a share for light contact, and a share of that.
+  !> modulus of the group makes the allowed penetration, times a share for light contact, and a share of that.
   pure function penalties(material, group, side, light) result(penalty)
     type(material_t), intent(in) :: material
     type(group_t), intent(in) :: group

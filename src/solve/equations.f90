@@ -65,6 +65,8 @@ module equations
     real(wp) :: penalty_share = 1.0_wp
     !> Corrections lead downhill alone: the equilibrium found before was not stable (newton). One that is not is taken.
     logical :: downhill = .false., takes_unstable = .false.
+    !> With a load factor: shares of corrections are taken that keep the residual below a ceiling (line_search).
+    logical :: below_ceiling = .false.
     !> Equilibrium is restored where the dies and supports of the operation before let the part go. A slender part bends far then:
     !> each correction stretches it by the square of its turn, and the next one takes that back, so that the residual rises and
     !> falls in turns. A search would stop where the stretch begins: corrections are taken whole, and most of the way is made at

@@ -7,7 +7,8 @@ module iteration_history
   implicit none
   private
   public :: iteration_t
-  public :: caught, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, judge
+  public :: caught, ceiling_of_residual, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near
+  public :: judge
   public :: was_given_time, went_round
 
   !> One line of the listing.
@@ -59,6 +60,10 @@ module iteration_history
   real(wp), parameter :: inner_share = 0.4_wp
   !> A search that ends below this share of the correction is short too where the residual is below this, and contact is settled.
   real(wp), parameter :: before_turn = 0.35_wp, turn_force = 1.0e-3_wp
+  !> A residual that need not fall in each iteration may rise to the largest of so many.
+  integer, parameter :: remembered = 3
+  !> The first correction of a motion that was predicted may raise it by this factor.
+  real(wp), parameter :: first_rise = 1.5_wp
   !> After so many short searches one after the other the whole correction is taken.
   integer, parameter :: short_searches = 2
 
@@ -112,6 +117,21 @@ contains
 
     is_near = history(size(history))%force_norm < near_force
   end function is_near
+
+  !> How far a residual that need not fall in each iteration may rise, over what it is: to the largest of the last ones, and by the
+  !> first correction a little; a correction from rest makes the motion of the step, by which the residual changes as it will.
+  pure function ceiling_of_residual(history, moves) result(ceiling)
+    type(iteration_t), intent(in) :: history(:)   !! (niteration)
+    logical, intent(in) :: moves                  !! there is a motion, predicted or corrected
+    real(wp) :: ceiling
+    integer :: n
+
+    n = size(history)
+    ceiling = huge(ceiling)
+    if (.not. (moves .and. history(n)%force_norm > 0)) return
+    ceiling = first_rise
+    if (n > 1) ceiling = maxval(history(max(1, n - remembered + 1):)%force_norm)/history(n)%force_norm
+  end function ceiling_of_residual
 
   !> The last searches were all short: they do not get past a turn of loading to unloading.
   pure function caught(history)

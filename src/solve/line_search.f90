@@ -23,6 +23,12 @@
 !> Past a limit point the residual grows along a way that leads downhill: the zero is sought further on, and no fall of the whole
 !> residual will do.
 !>
+!> Where a load factor is found with the motion its equation makes the matrix regular, but not definite, and the residual along the
+!> correction says nothing of where equilibrium is. The correction of Newton's method still leads down the whole residual, whatever
+!> the matrix; it need not fall in each iteration: no more is asked than that it does not pass a ceiling (L. Grippo, F. Lampariello,
+!> S. Lucidi, SIAM J. Numer. Anal. 23 (1986) 707-716), and the share is found by the parabola through the squares of the residual,
+!> whose slope at the start is -2 (J.E. Dennis, R.B. Schnabel, Numerical Methods for Unconstrained Optimization (1983), sec. 6.3.2).
+!>
 !> Where no point touches a die that was touched at the start of the step, nothing may hold the part, and a slender one
 !> springs back in a correction far longer than the gap. Then shares are tried, each a tenth of the one before, as long as they
 !> touch the die again; the shortest that does is found within a factor of two between the last two of them, and is taken,
@@ -41,9 +47,10 @@ module line_search
   public :: manner_t, real_fall, search_along, short_share
 
   !> How to search: take the whole whatever the residual, or find the zero along the correction more closely, and if need be by many
-  !> trials.
+  !> trials; or, above 0, until the whole residual is no more than so many times what it was.
   type :: manner_t
     logical :: whole = .false., closely = .false., many = .false., exactly = .false., downhill = .false.
+    real(wp) :: ceiling = 0.0_wp
   end type manner_t
 
   !> A search that ends below this share of the correction is short.
@@ -107,9 +114,14 @@ contains
       end if
       slope = slope_along(equations, correction, external - equations%force - (1 - trial)*others)
       norm = free_force(equations, external - equations%force)
-      if (abs(slope) < best) then
-        best = abs(slope)
+      if (merge(norm, abs(slope), manner%ceiling > 0) < best) then
+        best = merge(norm, abs(slope), manner%ceiling > 0)
         s = trial
+      end if
+      if (manner%ceiling > 0 .and. .not. manner%whole) then
+        if (norm <= manner%ceiling*norm0) return
+        trial = trial*share_by_parabola(norm0, norm, trial)
+        cycle
       end if
       accepted = manner%whole .or. any(abs(missing) > 0) .or. abs(slope) <= enough*slope0 &
                  .or. .not. (manner%exactly .or. manner%downhill) .and. (norm < real_fall*norm0 .or. k == 1 .and. norm < norm0)
@@ -134,6 +146,16 @@ contains
     du = start + s*correction + missing
     call evaluate(scene, equations, solution, dt, du, .true., report, corrected_from=start)
   end subroutine search_along
+
+  !> The next trial over this one, where the residual was `norm0`, and is `norm` after the share `trial` of a correction.
+  pure function share_by_parabola(norm0, norm, trial) result(share)
+    real(wp), intent(in) :: norm0, norm   !! [residual]
+    real(wp), intent(in) :: trial
+    real(wp) :: share
+
+    share = trial/((norm/norm0)**2 - 1 + 2*trial)
+    share = min(0.5_wp, max(0.1_wp, share))
+  end function share_by_parabola
 
   !> The next share to try, after `trial` gave `slope`: `near` and `far` (share, slope) are the ends of the bracket of the zero;
   !> `far` is 0 while there is none.

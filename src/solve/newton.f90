@@ -17,8 +17,8 @@ module newton
   use fields, only: displacement_field
   use flow_changes, only: flow_set, note_flow
   use heat_correction, only: follow_content, is_steep
-  use iteration_history, only: caught, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, in_turmoil, is_near, &
-                               iteration_t, judge, was_given_time, went_round
+  use iteration_history, only: caught, ceiling_of_residual, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, &
+                               in_turmoil, is_near, iteration_t, judge, was_given_time, went_round
   use jumped_bodies, only: has_jumped
   use kinds, only: wp
   use law_api, only: contact_stick
@@ -51,10 +51,11 @@ module newton
 
 contains
 
-  !> Find the equilibrium of the present solve at the end of a step of length dt. One that is not stable is left: the forces say to
-  !> which side, by corrections that lead downhill alone. A perfect part stays where it is, and in the shortest step nothing else
-  !> may be found: the equilibrium that is not stable is taken then, and in later steps until they are stable again. A step that
-  !> fails leaves the committed state as it was.
+  !> Find the equilibrium of the present solve at the end of a step of length dt. With a load factor corrections are taken whole, as
+  !> those of a slender part must be; where that leads nowhere, so much of them that the residual stays below a ceiling. An
+  !> equilibrium that is not stable is left: the forces say to which side, by corrections that lead downhill alone. A perfect part
+  !> stays where it is, and in the shortest step nothing else may be found: the equilibrium that is not stable is taken then, and in
+  !> later steps until they are stable again. A step that fails leaves the committed state as it was.
   subroutine solve_step(scene, equations, solution, dt, outcome, left, given, go_on)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -69,6 +70,14 @@ contains
     call begin_softly(scene, dt, equations)
     equations%takes_unstable = solution%stays_unstable
     call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
+    if (scene%load_factor%multiplier > 0 .and. .not. (outcome%converged .or. outcome%event < 1 .or. allocated(outcome%error))) then
+      history = outcome%history
+      equations%below_ceiling = .true.
+      call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
+      equations%below_ceiling = .false.
+      outcome%history = [history, outcome%history]
+      outcome%iterations = size(outcome%history) - 1
+    end if
     if (outcome%unstable > 0 .and. .not. equations%takes_unstable) then
       history = outcome%history
       equations%downhill = .true.
@@ -352,8 +361,10 @@ contains
       if (long .and. manner%many .and. solution%last_step > 0) manner%closely = .true.
       if (steep) manner = manner_t(exactly=.true.)
       if (equations%downhill) manner = manner_t(downhill=.true.)
+      if (equations%below_ceiling) manner%ceiling = ceiling_of_residual(outcome%history(first:), norm2(outcome%du) > 0)
       ! forces with contact kept are no measure of those without; past a limit point the way to equilibrium leads up and down
-      if (kept .and. afresh .or. scene%load_factor%multiplier > 0 .or. followed .or. equations%let_go) manner%whole = .true.
+      if (kept .and. afresh .or. followed .or. equations%let_go) manner%whole = .true.
+      if (scene%load_factor%multiplier > 0) manner%whole = .not. equations%below_ceiling
     end function manner_of_search
 
     !> A correction with a patch eliminated, or one past a limit point by which the residual falls by half, is taken without a

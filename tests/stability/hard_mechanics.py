@@ -348,6 +348,34 @@ def stick_slip(checks):
                0.0 if least > -1e-12 else 1.0)
 
 
+def ends_on_the_axis(checks):
+    """A ball pressed into an elastic block and taken back: its arc ends on the axis, where the parabola has a slope that the arc has not. The node
+    on the axis was now on its last piece and now beyond its end, and the way back ended at half of it; as of a ball that goes on beyond the axis."""
+    forces = []
+    for name, more in (("ends", ""), ("goes-on", " SEGM 0. 12. -1. 12.\n")):
+        run = checks.run("axis-" + name, deck(
+            "AXISYM", "LOG", block("0. 0. 15. 0. 15. 12. 0. 12.", "15 1. 10 1."),
+            STEEL + "LAW k COUL2D\n PENETR 1.E-3 PHI 0.2 AUGMENT 10\n",
+            "FIXED b 1 Y\nFIXED b 4 X\nDIE ball PILOT 0. 12.\n ARC 5. 17. 5*sin(.8) 17-5*cos(.8) 0. 12. 1.E-3\n" + more
+            + "CNT2D b 3 ball k\nMOVE ball Y go\nLIC go\n 0. 0. 1. -0.05 2. 0.\n", "STRAT 0.004 1.E-6 0.04 6 3"))
+        forces.append(max(abs(run.history["force_y_ball"])))
+    return abs(forces[0]/forces[1] - 1)
+
+
+def on_a_soft_pad(checks):
+    """A strip of steel pressed into a pad of rubber, ten thousand times softer: no step was found where the strip faces the pad, as penalties were
+    those of steel. Whichever of them faces the other, the force is the same."""
+    forces = []
+    for name, faces in (("strip", "DIE face SIDES pad 3\nCNT2D b 1 face k\n"), ("pad", "DIE face SIDES b 1\nCNT2D pad 3 face k\n")):
+        run = checks.run("soft-" + name, deck(
+            "PLSTN", "LOG", block("0. 0. 30. 0. 30. 2. 0. 2.", "45 1. 4 1.")
+            + "BLOCK pad PL8LS 9 rubber MEAN\n 0. -10. 30. -10. 30. 0. 0. 0.\n 20 1. 6 1.\nLAW rubber ELA\n 20. 0.49\n", PLASTIC.replace("PHI 0.2", "PHI 0.1 AUGMENT 10"),
+            faces + "FIXED pad 1 XY\nFIXED pad 2 4 X\nFIXED b 4 X\nDIE punch PILOT 0. 2.\n ARC 6. 8. 6*sin(pi/4) 8-6*cos(pi/4) 0. 2. 1.E-3\n"
+            "CNT2D b 3 punch k\nMOVE punch Y go\nLIC go\n 0. 0. 1. -2.\n", "STRAT 0.004 1.E-6 0.04 6 3"))
+        forces.append(run.history["force_y_punch"][-1])
+    return abs(forces[0]/forces[1] - 1)
+
+
 def s_shaped(checks):
     """A block pressed into an S-shaped die of parabolas by a second of the same shape: it runs, and keeps its volume."""
     run = checks.run("s-shaped", deck(
@@ -529,7 +557,7 @@ CASES = (
     Case("bent round a pin", round_a_pin, 0.25), Case("bent between three rollers", three_point_bending, 0.2),
     Case("blank under a holder", under_a_holder, 1e-4),
     Case("rolling", rolling, 0.01, LONG), Case("rocking die", rocking_die, 0.02),
-    Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG),
+    Case("ends on the axis", ends_on_the_axis, 1e-6), Case("on a soft pad", on_a_soft_pad, 5e-3), Case("S-shaped dies", s_shaped, 1e-3), Case("rib thinner than elements", thin_rib, 0.5, LONG),
     Case("nearly incompressible", nearly_incompressible, 1e-9), Case("past the peak", past_the_peak, 1e-9),
     Case("another solver", other_solver, 1e-6), Case("three blocks for one", joined, 1e-8), Case("pressed often", pressed_often, 1e-5),
     Case("one step or many", one_step_or_many, 1e-9), Case("slender billet", slender_billet, 0.03),
