@@ -12,11 +12,12 @@
 !>
 !> An elastic body bears more than that hundredth: rubber that is shut in, many times its modulus. Before a step is accepted in
 !> which it is deeper than allowed, its penalties are raised to what makes a third of that, up to a pressure of a hundred times the
-!> modulus (contact_stiffness), but where multipliers (AUGMENT) take the depth away. A penalty that the deck states is not touched.
+!> modulus (contact_stiffness): of the depth that multipliers (AUGMENT) have left. Were it left to them alone each augmentation
+!> would move the body by many times what is allowed, and take a step of its own. A penalty that the deck states is not touched.
 module soft_penalties
   use contact_penalties, only: penalties_of_card, penalties_t
   use contact_point, only: usual_bearing
-  use contact_state, only: at_penetration, at_pressure, at_status, contact_block
+  use contact_state, only: at_augmentation, at_penetration, at_pressure, at_status, contact_block
   use dofs, only: dofs_t
   use fields, only: displacement_field
   use iteration_history, only: iteration_t
@@ -131,15 +132,13 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g
     real(wp), intent(in) :: share
-    type(penalties_t) :: given
 
     may_rise = follows(scene, g)
-    if (.not. may_rise) return
-    given = penalties_of_card(scene%materials(scene%groups(g)%material))
-    may_rise = scene%groups(g)%most_share > share .and. given%augmentations == 0
+    if (may_rise) may_rise = scene%groups(g)%most_share > share
   end function may_rise
 
-  !> Largest pressure of such contact, or tension of glue, over that which makes the allowed penetration with the whole penalties.
+  !> Largest pressure of such contact, or tension of glue, over that which makes the allowed penetration with the whole penalties;
+  !> with `above` without what multipliers take of it.
   pure function bearing(scene, solution, trial, above) result(largest)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -170,10 +169,25 @@ contains
 
       if (size(state) == 0) return
       corners = find_variable(scene%groups(g)%variables, 'corner_place') > 0
-      pressure = maxval(abs(state(at_pressure, :, :)))
-      if (corners) pressure = max(pressure, maxval(abs(state(contact_block(corners, size(state, 1)) + at_pressure, :, :))))
+      pressure = of_points(state, 0)
+      if (corners) pressure = max(pressure, of_points(state, contact_block(corners, size(state, 1))))
       largest = max(largest, pressure/(usual_bearing*scene%groups(g)%modulus))
     end subroutine find_largest
+
+    !> Largest pressure of points, or of corners beside them.
+    pure function of_points(state, n) result(pressure)
+      real(wp), intent(in) :: state(:, :, :)
+      integer, intent(in) :: n   !! components of the state before those of the points
+      real(wp) :: pressure
+
+      if (present(above)) then
+        pressure = maxval(abs(state(n + at_pressure, :, :) - state(n + at_augmentation, :, :)), &
+                          mask=nint(state(n + at_status, :, :)) /= contact_open)
+        pressure = max(pressure, 0.0_wp)
+      else
+        pressure = maxval(abs(state(n + at_pressure, :, :)))
+      end if
+    end function of_points
 
   end function bearing
 
