@@ -30,6 +30,7 @@ module run_ending
   use summary_table, only: summary_lines
   use system, only: join_path
   use text, only: add_text, string_t, to_text
+  use thinned_sheets, only: warn_of_thinned_sheets
   use unsettled_contact, only: warn_of_unsettled_contact
   implicit none
   private
@@ -98,6 +99,7 @@ contains
       //'in them, any other buckles or necks (move nodes by a thousandth of the thickness to see how)')
     if (run%exit_code /= exit_done) return
     call warn_of_webs(scene, solution, warnings)
+    call warn_of_thinned_sheets(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)
     call warn_of_held_steels(scene, solution, warnings)
     call warn_of_floating_bodies(scene, run%equations%laws, run%equations%loose, solution, warnings)

@@ -223,6 +223,24 @@ SAVE   1000
 END
 """
 # The wall of a cup whose flange is clamped in a gap that it thickens into.
+NECKS = """TITLE a sheet with a narrow middle, pulled
+STATE PLSTS 2.
+KINEM LOG
+BLOCK b PL8LS 9 m
+   0. 0.   10. 0.   9.9 20.   0. 20.
+   4 1.   12 1.
+LAW m EPLA
+   200000. 0.3
+   SWIFT 500. 0.01 0.05
+FIXED b 3 Y
+FIXED b 4 X
+MOVE b 1 Y go
+LIC go
+   0. 0.   1. -60.
+PROBE left MIN stretch_zz b
+STRAT 0.002 1.E-6 0.02 6 3
+END
+"""
 TORN = """TITLE  A cup that tears
 STATE  AXISYM
 KINEM  LOG
@@ -376,12 +394,18 @@ def lying(checks):
 
 
 def tears(checks):
-    """A cup whose flange cannot thicken: its wall necks until nothing is left of it, and the run says that, not that it folds."""
+    """A cup whose flange cannot thicken: its wall necks until nothing is left of it, and the run says that, not that it folds. A sheet of
+    plane stress pulled until it has necked across the plane."""
     result = run([write(checks.path("cup.lag"), TORN), "--out", checks.path("cup"), "--threads", "1"])
     checks.that(result.returncode == NO_CONVERGENCE, "cup: ends with 3", said(result))
     for words in ("a body parts: step", "sheet has thinned to nothing at x = ", "it has necked there and tears"):
         checks.that(words in said(result), f"cup: says '{words}'", said(result))
     checks.that("DIE name SIDES" not in said(result), "cup: nothing of contact with itself", said(result))
+    result = run([write(checks.path("sheet.lag"), NECKS), "--out", checks.path("sheet"), "--threads", "1"])
+    checks.that(result.returncode == DONE, "sheet: ends with 0", said(result))
+    told = [line for line in summary(checks.path("sheet"))["warnings"] if line.startswith("b has thinned to ")]
+    left = history(checks.path("sheet"))["left"][-1]
+    checks.that(len(told) == 1 and abs(float(told[0].split()[4])/100/left - 1) < 0.05, "sheet: told how thin it is", (told, left))
 
 
 def springback(checks):
