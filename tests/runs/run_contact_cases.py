@@ -236,7 +236,7 @@ FIXED b 3 Y
 FIXED b 4 X
 MOVE b 1 Y go
 LIC go
-   0. 0.   1. -60.
+   0. 0.   1. -40.
 PROBE left MIN stretch_zz b
 STRAT 0.002 1.E-6 0.02 6 3
 END
@@ -403,7 +403,7 @@ def tears(checks):
     checks.that("DIE name SIDES" not in said(result), "cup: nothing of contact with itself", said(result))
     result = run([write(checks.path("sheet.lag"), NECKS), "--out", checks.path("sheet"), "--threads", "1"])
     checks.that(result.returncode == DONE, "sheet: ends with 0", said(result))
-    told = [line for line in summary(checks.path("sheet"))["warnings"] if line.startswith("b has thinned to ")]
+    told = [line["text"] for line in summary(checks.path("sheet"))["warnings"] if line["text"].startswith("b has thinned to ")]
     left = history(checks.path("sheet"))["left"][-1]
     checks.that(len(told) == 1 and abs(float(told[0].split()[4])/100/left - 1) < 0.05, "sheet: told how thin it is", (told, left))
 
