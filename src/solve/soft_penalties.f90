@@ -11,9 +11,9 @@
 !> little depth is much of the force.
 !>
 !> An elastic body bears more than that hundredth: rubber that is shut in, many times its modulus. Before a step is accepted in
-!> which it is deeper than allowed, its penalties are raised to what makes a third of that, up to a pressure of a hundred times the
-!> modulus (contact_stiffness): of the depth that multipliers (AUGMENT) have left. Were it left to them alone each augmentation
-!> would move the body by many times what is allowed, and take a step of its own. A penalty that the deck states is not touched.
+!> which it is deeper than three times what is allowed, its penalties are raised to what makes that once, up to a pressure of a
+!> hundred times the modulus (contact_stiffness): of the depth that multipliers (AUGMENT) have left. Were it left to them alone each
+!> augmentation would move the body by many times what is allowed. A penalty that the deck states is not touched.
 module soft_penalties
   use contact_penalties, only: penalties_of_card, penalties_t
   use contact_point, only: usual_bearing
@@ -32,8 +32,8 @@ module soft_penalties
 
   !> Depth over the allowed that a share is chosen for, and the one above which it is raised.
   real(wp), parameter :: aim = 0.1_wp, limit = 0.3_wp
-  !> The same for shares that are more than the whole.
-  real(wp), parameter :: aim_above = 0.3_wp, limit_above = 1.0_wp
+  !> The same for shares that are more than the whole: on unlike meshes pressures are the less even the stiffer contact is.
+  real(wp), parameter :: aim_above = 1.0_wp, limit_above = 3.0_wp
   !> Depth over the largest displacement of the bodies that is aimed at, and above which the share is raised.
   real(wp), parameter :: aim_of_way = 5.0e-4_wp, limit_of_way = 1.0e-3_wp
   !> The least share; the penalties of a share are lowered where they become so much less.
