@@ -9,6 +9,9 @@ module die_summary
   private
   public :: die_text
 
+  !> Distance from the axis over the size of a die that is round-off of points as cards give them [-].
+  real(wp), parameter :: round_off = 1.0e-9_wp
+
 contains
 
   !> Name, pieces, motion and temperature.
@@ -18,7 +21,7 @@ contains
     character(len=:), allocatable :: s
 
     associate (n => size(scene%dies(die)%pieces, 3))
-      s = padded(scene%dies(die)%name, 24)//to_text(n)//trim(merge(' piece,  ', ' pieces, ', n == 1))//' '
+      s = padded(scene%dies(die)%name, 24)//to_text(n)//trim(merge(' piece  ', ' pieces ', n == 1))//beyond_axis(scene, die)//', '
     end associate
     if (is_deformable(scene%dies(die))) then
       s = s//'sides of bodies'
@@ -27,6 +30,21 @@ contains
     end if
     s = s//temperature_of(scene, die)
   end function die_text
+
+  !> Pieces that are beyond the axis, as the mirror image of a die that ends there (cards_dies).
+  pure function beyond_axis(scene, die) result(s)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    character(len=:), allocatable :: s
+    integer :: n
+
+    s = ''
+    if (scene%plane_state /= axisymmetric .or. is_deformable(scene%dies(die))) return
+    associate (d => scene%dies(die))
+      n = count(maxval(d%pieces(1, :, :), 1) + d%pilot(1) <= round_off*maxval(abs(d%pieces)))
+    end associate
+    if (n > 0) s = ' ('//to_text(n)//' beyond the axis)'
+  end function beyond_axis
 
   !> What moves a rigid die.
   pure function motion_of(scene, die) result(s)
