@@ -8,7 +8,7 @@ module cards_dies
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
   use fillets, only: round_corner
-  use dies, only: die_t, finish_die
+  use dies, only: die_t, finish_die, radius_on
   use kinds, only: wp
   use piece_rows, only: ends_meet, piece_words, read_piece
   use scene, only: axisymmetric
@@ -20,9 +20,6 @@ module cards_dies
 
   !> Row of the card after those of pieces.
   integer, parameter :: fillet = 4
-
-  !> Distance from the axis over the size of a die that is round-off of points as cards give them [-].
-  real(wp), parameter :: round_off = 1.0e-9_wp
 
   !> State of reading the rows of a card.
   type :: die_rows_t
@@ -127,18 +124,18 @@ contains
   subroutine go_on_past_axis(die)
     type(die_t), intent(inout) :: die
     real(wp), allocatable :: pieces(:, :, :)
-    real(wp) :: pilot(3), axis
+    real(wp) :: pilot(3)
+    logical :: on_axis(2)   !! ends of the first piece, or of the last
     integer :: n
 
     n = size(die%pieces, 3)
     if (die%closed .or. n == 0) return
     pilot = die%pilot
-    axis = -pilot(1)
     pieces = die%pieces
-    if (is_on_axis(pieces(1, 3, n)) .and. .not. is_on_axis(pieces(1, 1, n))) &
-      pieces = reshape([pieces, mirrored(pieces(:, :, n))], [2, 3, n + 1])
-    if (is_on_axis(pieces(1, 1, 1)) .and. .not. is_on_axis(pieces(1, 3, 1))) &
-      pieces = reshape([mirrored(pieces(:, :, 1)), pieces], [2, 3, size(pieces, 3) + 1])
+    on_axis = ends_on_axis(pieces(:, :, n))
+    if (on_axis(2) .and. .not. on_axis(1)) pieces = reshape([pieces, mirrored(pieces(:, :, n))], [2, 3, n + 1])
+    on_axis = ends_on_axis(pieces(:, :, 1))
+    if (on_axis(1) .and. .not. on_axis(2)) pieces = reshape([mirrored(pieces(:, :, 1)), pieces], [2, 3, size(pieces, 3) + 1])
     if (size(pieces, 3) == n) return
     die%pieces = pieces
     die%pilot = 0
@@ -147,21 +144,22 @@ contains
 
   contains
 
-    pure function is_on_axis(x) result(yes)
-      real(wp), intent(in) :: x   !! in the pilot's axes [length]
-      logical :: yes
+    pure function ends_on_axis(piece) result(on_axis)
+      real(wp), intent(in) :: piece(2, 3)   !! in the pilot's axes [length]
+      logical :: on_axis(2)
 
-      yes = abs(x - axis) <= round_off*max(maxval(abs(die%pieces)), abs(pilot(1)))
-    end function is_on_axis
+      on_axis = [.not. abs(radius_on(die, piece(1, 1))) > 0,.not. abs(radius_on(die, piece(1, 3))) > 0]
+    end function ends_on_axis
 
     !> The mirror image of a piece, walked the other way.
     pure function mirrored(piece) result(image)
       real(wp), intent(in) :: piece(2, 3)   !! in the pilot's axes [length]
       real(wp) :: image(2, 3)
 
-      image(1, :) = 2*axis - piece(1, 3:1:-1)
+      image(1, :) = -2*pilot(1) - piece(1, 3:1:-1)
       image(2, :) = piece(2, 3:1:-1)
     end function mirrored
+
   end subroutine go_on_past_axis
 
   subroutine read_pilot(cursor, pilot)

@@ -1,6 +1,6 @@
 !> The line of a die in a scene's summary: its pieces, its motion, its temperature.
 module die_summary
-  use dies, only: is_deformable
+  use dies, only: is_deformable, radius_on
   use kinds, only: pi, wp
   use scene, only: axisymmetric, scene_t
   use summary_words, only: direction_names, times
@@ -8,9 +8,6 @@ module die_summary
   implicit none
   private
   public :: die_text
-
-  !> Distance from the axis over the size of a die that is round-off of points as cards give them [-].
-  real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains
 
@@ -36,12 +33,12 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: die
     character(len=:), allocatable :: s
-    integer :: n
+    integer :: n, k
 
     s = ''
     if (scene%plane_state /= axisymmetric .or. is_deformable(scene%dies(die))) return
     associate (d => scene%dies(die))
-      n = count(maxval(d%pieces(1, :, :), 1) + d%pilot(1) <= round_off*maxval(abs(d%pieces)))
+      n = count([(radius_on(d, maxval(d%pieces(1, :, k))) <= 0, k=1, size(d%pieces, 3))])
     end associate
     if (n > 0) s = ' ('//to_text(n)//' beyond the axis)'
   end function beyond_axis

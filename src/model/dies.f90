@@ -14,9 +14,11 @@ module dies
   implicit none
   private
   public :: die_t, edge_turn, finish_die, is_deformable, is_straight, place_edges, place_on_nodes, present_die, in_pilot_axes
+  public :: radius_on
 
-  !> Distance from a straight line over its length that is round-off of points as cards give them [-].
-  real(wp), parameter :: straight = 1.0e-9_wp
+  !> Distance from a straight line over its length, and from the axis over the size of the die, that is round-off of points as cards
+  !> give them [-].
+  real(wp), parameter :: straight = 1.0e-9_wp, at_axis = 1.0e-9_wp
 
   !> Cosine of the least turn of a deformable die at an edge of its body, 10 degrees, in the mesh as it began: sides that follow
   !> a curve turn by less where they meet, since a parabola over an arc of 80 degrees ends within 4 degrees of it.
@@ -52,6 +54,16 @@ contains
     call prepare_search(die)
     if (.not. is_deformable(die)) call list_corners(die)
   end subroutine finish_die
+
+  !> Radius of a place on a rigid die of an axisymmetric scene at the start, 0 where it is round-off.
+  pure function radius_on(die, x) result(radius)
+    type(die_t), intent(in) :: die
+    real(wp), intent(in) :: x   !! in the pilot's axes [length]
+    real(wp) :: radius          !! [length]
+
+    radius = x + die%pilot(1)
+    if (abs(radius) <= at_axis*max(maxval(abs(die%pieces)), abs(die%pilot(1)))) radius = 0
+  end function radius_on
 
   !> Vertices where the curve turns right, away from the part. At an open end the body is taken to go down at a right angle.
   pure subroutine list_corners(die)
