@@ -3,6 +3,7 @@ module failed_step
   use acceptance, only: is_on_probation, note_cutback
   use damping, only: begin_damping, strengthen_damping
   use errors, only: error_t
+  use folding_bodies, only: law_of_folds
   use kinds, only: wp
   use listing, only: list_cutback, list_note, list_softer_contact
   use probation, only: is_too_short, pass_probation, refuse_after_all
@@ -27,7 +28,8 @@ module failed_step
 
 contains
 
-  !> A step has failed: it is cut back, a new mesh is asked for, the mesh is refused, or the run cannot go on.
+  !> A step has failed: it is cut back, a new mesh is asked for, the mesh is refused, sides of a body that have met are to have contact,
+  !> or the run cannot go on.
   subroutine answer_failure(scene, dt, outcome, cutbacks, solution, run, error)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt   !! of the step [time]
@@ -39,6 +41,13 @@ contains
     type(unheld_die_t) :: unheld
     logical :: give_up, on_probation, softer
 
+    if (outcome%passes_itself .and. .not. outcome%thins_out) then
+      if (law_of_folds(scene, run%equations%laws, outcome%crossing_group) > 0) then
+        run%folding = outcome%crossing_group
+        run%folds = outcome%reason
+        return
+      end if
+    end if
     on_probation = is_on_probation(solution%probation)
     unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1

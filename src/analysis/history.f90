@@ -128,6 +128,7 @@ contains
     if (scene%load_factor%multiplier > 0) &
       call table%put(solution%fields(find_field(solution%fields, 'load_factor'))%value(1, 1))
     do k = 1, size(scene%dies)
+      if (scene%dies(k)%unasked) cycle
       call table%put(-factor*solution%fields(pilot_field)%applied(:, k))
       if (.not. is_deformable(scene%dies(k))) call table%put(solution%fields(pilot_field)%value(:, k) - scene%dies(k)%pilot)
     end do

@@ -49,7 +49,7 @@ contains
     cutbacks = 0
     call start_march(scene, solution, run, error)
     if (.not. allocated(error)) call refuse_lost_equilibrium(scene, solution, error)
-    do while (.not. (allocated(error) .or. mesh_is_due(solution) .or. at_end(scene, solution)))
+    do while (.not. (allocated(error) .or. mesh_is_due(solution) .or. at_end(scene, solution) .or. run%folding > 0))
       dt = choose_step(scene, solution%time, solution%next_step)
       call solve_to_event(scene, dt, outcome, solution, run)
       if (allocated(outcome%error)) then

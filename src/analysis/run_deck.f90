@@ -12,6 +12,7 @@ module run_deck
   use diagnostics, only: diagnostics_t
   use errors, only: error_t, exit_done, exit_input, exit_remesh, exit_signal, fail
   use exchange, only: read_state, write_checkpoint
+  use folding_run, only: save_with_contact
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use heat_handed_over, only: hand_heat_over
   use kinds, only: wp
@@ -24,7 +25,7 @@ module run_deck
   use next_operation, only: begin_operation
   use remeshing, only: drop_triggers
   use run_beginning, only: begin_run
-  use run_ending, only: end_run
+  use run_ending, only: end_run, suspend_run
   use run_facts, only: run_facts_t
   use run_input, only: read_input, read_next_operation
   use run_options, only: run_options_t, stem_of
@@ -123,6 +124,12 @@ contains
       code = run%exit_code
       if (operations%count > 0) call go_on(options, deck, diagnostics, operations, scene, solution, run, &
                                              code, error)
+      if (run%folding == 0 .or. allocated(error)) return
+      call save_with_contact(deck, diagnostics, operations, scene, solution, run%folding, run, error)
+      if (allocated(error)) return
+      options = given
+      options%resume = run%stem//'.ckp.h5'
+      call read_and_run(options, lock, code, error)
     end if
   end subroutine read_and_run
 
@@ -154,7 +161,7 @@ contains
     type(operations_t), intent(inout) :: operations
     type(scene_t), intent(inout) :: scene
     type(solution_t), intent(inout) :: solution
-    type(run_t), intent(in) :: first   !! of the operation that has ended
+    type(run_t), intent(inout) :: first   !! of the operation that has ended; what stops a later one is noted
     integer, intent(inout) :: code
     type(error_t), allocatable, intent(inout) :: error
     type(run_t), allocatable :: run
@@ -185,6 +192,7 @@ contains
       run%has_new_meshes = first%has_new_meshes
       call run_and_report(options, next, after, run, error)
       code = run%exit_code
+      first%folding = run%folding
       scene = next
       solution = after
       deallocate (run, next, after)
@@ -239,6 +247,10 @@ contains
     call march_to_end(scene, solution, run, error)
     facts%wall = wall_seconds() - started
     facts%processor = cpu_seconds() - processor
+    if (run%folding > 0 .and. .not. allocated(error)) then
+      call suspend_run(options, scene, solution, run, facts, error)
+      return
+    end if
     call end_run(options, scene, solution, nbefore, run, facts, error)
   end subroutine run_and_report
 

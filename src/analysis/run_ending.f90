@@ -11,11 +11,13 @@ module run_ending
   use cut_report, only: warn_of_webs
   use errors, only: error_t, exit_done, exit_no_convergence
   use floating_bodies, only: warn_of_floating_bodies, warn_of_idle_dies
+  use folded_bodies, only: warn_of_folds
+  use folding_bodies, only: law_of_folds
   use heated_steels, only: warn_of_missing_austenite
   use held_steels, only: warn_of_held_steels
   use judge_remesh, only: taken_up_words
   use kinds, only: wp
-  use listing, only: close_listing, end_progress, list_lines
+  use listing, only: close_listing, end_progress, list_lines, list_note
   use narrow_loads, only: narrow_words
   use passed_planes, only: warn_of_passed_planes
   use pilot_differences, only: sample_t
@@ -34,7 +36,7 @@ module run_ending
   use unsettled_contact, only: warn_of_unsettled_contact
   implicit none
   private
-  public :: end_run
+  public :: end_run, suspend_run
 
 contains
 
@@ -77,6 +79,26 @@ contains
     if (.not. allocated(error)) call print_end(options, scene, run%exit_code, facts, nbefore, lines, error)
   end subroutine end_run
 
+  !> A run stops to go on at once with contact that a body needs which has met itself: it is noted, and what it has cost so far.
+  subroutine suspend_run(options, scene, solution, run, facts, error)
+    type(run_options_t), intent(in) :: options
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+    type(run_facts_t), intent(inout) :: facts   !! with its seconds
+    type(error_t), allocatable, intent(out) :: error
+    integer :: material
+
+    call end_progress(run%listing)
+    call close_run(scene, run%equations, solution, run%totals%volume, facts%closing)
+    if (run%has_new_meshes .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
+      call close_cost(options, scene, solution, run, facts, error)
+    material = law_of_folds(scene, run%equations%laws, run%folding)
+    call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//run%folds//'; from here on its sides press ' &
+                   //'on one another, by LAW '//scene%materials(material)%name)
+    call close_listing(run%listing)
+  end subroutine suspend_run
+
   !> What the state at the end gives cause to say.
   subroutine warn_at_end(scene, solution, run, warnings)
     type(scene_t), intent(in) :: scene
@@ -99,6 +121,7 @@ contains
       //'in them, any other buckles or necks (move nodes by a thousandth of the thickness to see how)')
     if (run%exit_code /= exit_done) return
     call warn_of_webs(scene, solution, warnings)
+    call warn_of_folds(scene, warnings)
     call warn_of_thinned_sheets(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)
     call warn_of_held_steels(scene, solution, warnings)

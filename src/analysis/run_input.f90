@@ -51,6 +51,7 @@ contains
     end if
     call list_operations(deck, operations, diagnostics)
     if (allocated(options%fineness)) operations%fineness = options%fineness
+    if (allocated(remesh)) operations%folding = remesh%folding
     operation = 1
     if (operations%count > 0) call read_all(deck, operations, diagnostics, scene)
     generation = 1

@@ -27,7 +27,7 @@ module run_record
   use watch_mesh, only: mesh_is_due
   implicit none
   private
-  public :: at_end, record, run_t, save_all
+  public :: at_end, ends_now, record, run_t, save_all
 
   !> A run: its files, and what is needed to write them.
   type :: run_t
@@ -57,6 +57,9 @@ module run_record
     logical :: spurious_reported = .false.
     !> The first of the steps that are damped now; 0 where none is.
     integer :: damped_from = 0
+    !> A group of the body whose sides have met, where no card gives them contact, and why it is known; 0 where none have.
+    integer :: folding = 0
+    character(len=:), allocatable :: folds
     !> Of a deck with ACCURACY, but for its pilots.
     type(accuracy_plan_t), allocatable :: plan
     integer :: exit_code = exit_done

@@ -165,6 +165,10 @@ contains
       if (error%code == exit_no_convergence .and. solution%step > 0 .and. .not. run%mesh_refused) then
         call save_all(scene, solution, run, late)
       end if
+    else if (run%folding > 0) then
+      ! goes on at once, with contact there (folding_run)
+      run%exit_code = exit_remesh
+      run%stop_reason = run%folds
     else if (mesh_is_due(solution)) then
       run%exit_code = exit_remesh
       run%stop_reason = remesh_reason(scene, solution)

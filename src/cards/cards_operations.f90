@@ -42,6 +42,8 @@ module cards_operations
     logical :: remeshed = .false.
     !> How fine all of them are made, over what the deck says.
     type(fineness_t) :: fineness
+    !> Bodies whose sides have met without a card that gives them contact; not allocated where there are none.
+    type(string_t), allocatable :: folding(:)
   end type operations_t
 
 contains
@@ -133,7 +135,7 @@ contains
     integer :: i, mistakes
 
     if (operations%count == 0) then
-      call read_scene(deck, scene, diagnostics, remesh, operations%fineness)
+      call read_scene(deck, scene, diagnostics, remesh, operations%fineness, operations%folding)
       return
     end if
     part = deck
@@ -144,7 +146,7 @@ contains
       part%cards(i)%keyword = '-'//part%cards(i)%keyword
     end do
     mistakes = diagnostics%count()
-    call read_scene(part, scene, diagnostics, remesh, operations%fineness)
+    call read_scene(part, scene, diagnostics, remesh, operations%fineness, operations%folding)
     if (diagnostics%count() == mistakes) call put_to_sleep(part, scene, diagnostics)
     scene%operation = k
     scene%operations = operations%count

@@ -34,6 +34,7 @@ module scene_reader
   use elem_api, only: elem_t
   use elem_registry, only: list_elems
   use element_fields, only: declare_fields, list_body_elems
+  use folding_bodies, only: give_own_contact
   use mesh_finish, only: finish_mesh
   use mesh_parts, only: mesh_parts_t, start_parts
   use own_mesh_sizes, only: measure_own_mesh
@@ -53,16 +54,18 @@ contains
 
   !> Fill `scene` from the cards. It is only of use when `diagnostics` has no mistakes afterwards. `remesh` replaces the mesh
   !> the cards make; `fineness` is over what the cards say (none: as they say).
-  subroutine read_scene(deck, scene, diagnostics, remesh, fineness)
+  subroutine read_scene(deck, scene, diagnostics, remesh, fineness, folding)
     type(deck_t), intent(inout), target :: deck
     type(scene_t), intent(out) :: scene
     type(diagnostics_t), intent(inout), target :: diagnostics
     type(remesh_t), intent(in), optional :: remesh
     type(fineness_t), intent(in), optional :: fineness
+    type(string_t), intent(in), optional :: folding(:)   !! names of bodies whose sides have met
     type(draft_t) :: draft
     type(mesh_parts_t) :: parts
     type(string_t), allocatable :: keywords(:)
     logical :: has_own_mesh
+    integer :: k
 
     has_own_mesh = .not. present(remesh)
     call start_draft(draft)
@@ -131,6 +134,11 @@ contains
     if (present(fineness)) call make_finer(fineness, draft)
     call refuse_unused_names(deck, draft, keywords, diagnostics)
 
+    if (present(folding) .and. diagnostics%count() == 0) then
+      do k = 1, size(folding)
+        call give_own_contact(folding(k)%s, remesh, draft)
+      end do
+    end if
     if (present(remesh)) call order_as_remeshed(remesh, draft%scene%groups)
     if (diagnostics%count() == 0) call declare_fields(draft%elems, draft%scene)
     if (diagnostics%count() == 0) call refuse_missing_drivers(draft, diagnostics)

@@ -37,6 +37,8 @@ module dies
     real(wp) :: pilot(3) = 0.0_wp
     !> Nodes of the pieces of a deformable die (3, npiece); not allocated for a rigid one.
     integer, allocatable :: nodes(:, :)
+    !> Made in the run of sides of a body that have met, where no card gives them contact (folding_bodies).
+    logical :: unasked = .false.
   end type die_t
 
 contains

@@ -36,6 +36,7 @@ contains
     call add(columns, 'points_slipping [-]')
     if (scene%load_factor%multiplier > 0) call add(columns, scene%multipliers(scene%load_factor%multiplier)%name//' [-]')
     do k = 1, size(scene%dies)
+      if (scene%dies(k)%unasked) cycle
       call add(columns, 'force_x_'//scene%dies(k)%name//' [force]')
       call add(columns, 'force_y_'//scene%dies(k)%name//' [force]')
       call add(columns, 'moment_'//scene%dies(k)%name//' [force*length]')

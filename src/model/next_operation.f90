@@ -30,6 +30,7 @@ contains
     remesh%coordinates = scene%mesh%coordinates
     remesh%origin = scene%mesh%origin
     remesh%own_mesh = scene%remesher%own_mesh
+    if (.not. allocated(remesh%folding)) allocate (remesh%folding(0))
     allocate (remesh%sides, source=scene%mesh%sides)
     allocate (remesh%groups(size(scene%groups)))
     do g = 1, size(scene%groups)

@@ -3,11 +3,14 @@
 !> Where two sides of the curve meet, the points of the one that comes later along the die are pressed on the other, so that each
 !> contact acts once. A side meets no piece that it is itself.
 module own_contact
-  use scene, only: group_t, scene_t
+  use bodies, only: bodies_of_nodes
   use dies, only: is_deformable
+  use scene, only: group_t, is_solid, scene_t
+  use text, only: add_text, string_t
   implicit none
   private
-  public :: faces_itself, passes_itself_advice, passes_itself_words, pieces_to_meet, thins_out_advice, thins_out_words
+  public :: faces_itself, group_named, list_folding, passes_itself_advice, passes_itself_words, pieces_to_meet
+  public :: thins_out_advice, thins_out_words
 
   !> Why a run ends whose body passes through itself where no contact is asked for, and what it needs.
   character(len=*), parameter :: passes_itself_words = 'a body passes through itself', passes_itself_advice = &
@@ -51,5 +54,54 @@ contains
       end do
     end associate
   end subroutine pieces_to_meet
+
+  !> Bodies whose sides have met without a card that gives them contact, by the name of the first group of each.
+  pure subroutine list_folding(scene, names)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(out) :: names(:)   !! (nbody)
+    integer :: body(size(scene%mesh%coordinates, 2)), d, g
+
+    allocate (names(0))
+    if (.not. any(scene%dies%unasked)) return
+    body = bodies_of_nodes(scene)
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g)) .or. size(scene%groups(g)%connectivity, 2) == 0) cycle
+      do d = 1, size(scene%dies)
+        if (.not. scene%dies(d)%unasked) cycle
+        if (body(scene%dies(d)%nodes(1, 1)) /= body(scene%groups(g)%connectivity(1, 1))) cycle
+        if (.not. is_listed(scene, body, names, body(scene%groups(g)%connectivity(1, 1)))) &
+          call add_text(names, scene%groups(g)%name)
+      end do
+    end do
+  end subroutine list_folding
+
+  !> A group of one of the names belongs to a body.
+  pure function is_listed(scene, body, names, b) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: body(:)            !! (nnode) of every node
+    type(string_t), intent(in) :: names(:)    !! (n)
+    integer, intent(in) :: b
+    logical :: yes
+    integer :: g, k
+
+    yes = .false.
+    do k = 1, size(names)
+      g = group_named(scene, names(k)%s)
+      if (g > 0) yes = yes .or. body(scene%groups(g)%connectivity(1, 1)) == b
+    end do
+  end function is_listed
+
+  !> The group of elements of a name, 0 where there is none, or it has no elements.
+  pure function group_named(scene, name) result(g)
+    type(scene_t), intent(in) :: scene
+    character(len=*), intent(in) :: name
+    integer :: g
+
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g)) .or. size(scene%groups(g)%connectivity, 2) == 0) cycle
+      if (scene%groups(g)%name == name) return
+    end do
+    g = 0
+  end function group_named
 
 end module own_contact

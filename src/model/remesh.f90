@@ -3,6 +3,7 @@ module remesh
   use kinds, only: wp
   use mesh, only: side_set_t
   use remesher_options, only: own_mesh_t
+  use text, only: string_t
   implicit none
   private
   public :: remesh_t, elements_t
@@ -17,10 +18,12 @@ module remesh
   end type elements_t
 
   type :: remesh_t
-    !> 1 for the deck's own mesh; nothing but the operation is filled then.
+    !> 1 for the deck's own mesh; nothing but the operation and `folding` is filled then.
     integer :: generation = 1
     !> Operation that goes on, or begins, on it; 0 for a deck without any.
     integer :: operation = 0
+    !> Bodies whose sides have met without a card that gives them contact, by the name of a group of each.
+    type(string_t), allocatable :: folding(:)
     !> Steps before this mesh; 0: the bodies are at rest on it, as the cards have them.
     integer :: step = 0
     !> Where the nodes are at the start of this mesh, and where their material was at the start of the first (2, nnode) [length].

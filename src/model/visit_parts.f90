@@ -53,6 +53,7 @@ contains
     if (deformable) carried = of_the_mesh
     call visitor%member('pieces', self%pieces, carried, '2, 3, piece', 'length')
     call visitor%member('deformable', deformable, kept)
+    call visitor%member('unasked', self%unasked, kept)
     if (deformable) call visitor%member('nodes', self%nodes, of_the_mesh, '3, piece', low=1)
     call visitor%fixed('start', self%pilot, kept, 'length')
     call visitor%derived('boxes', of_the_pieces)

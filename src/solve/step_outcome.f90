@@ -27,8 +27,9 @@ module step_outcome
     character(len=:), allocatable :: event_reason
     !> The solve that failed is one of heat alone.
     logical :: of_heat = .false.
-    !> The equilibrium found has a body that passes through itself.
+    !> The equilibrium found has a body that passes through itself, one of the group of elements `crossing_group`.
     logical :: passes_itself = .false.
+    integer :: crossing_group = 0
     !> It has thinned to nothing where it does.
     logical :: thins_out = .false.
     !> Share of the heat through contact that is another by the contact that it leads to, where turns of the solves do not agree on

@@ -75,6 +75,7 @@ contains
     if (.not. crossing%found) return
     outcome%converged = .false.
     outcome%passes_itself = .true.
+    outcome%crossing_group = crossing%group
     outcome%thins_out = crossing%thinned
     outcome%reason = scene%groups(crossing%group)%name &
                      //trim(merge(' has thinned to nothing', ' passes through itself ', crossing%thinned)) &

@@ -9,6 +9,7 @@ module exchange_read
   use hash, only: sha256
   use member_reader, only: member_reader_t
   use next_operation, only: remesh_of
+  use own_contact, only: list_folding
   use remesh, only: remesh_t
   use scene, only: scene_t
   use solution, only: solution_t, start_solution
@@ -78,6 +79,7 @@ contains
     call read_bare_scene(reader, scene, error)
     if (allocated(error)) return
     remesh%operation = scene%operation
+    call list_folding(scene, remesh%folding)
     if (scene%generation == 1) return
     call start_solution(scene, solution)
     call read_state(reader, scene, solution, error)

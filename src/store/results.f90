@@ -13,7 +13,7 @@ module results
   use kinds, only: wp
   use result_dies, only: put_dies
   use result_fields, only: put_cells, put_field, put_nodal_fields, put_points, put_vector
-  use result_mesh, only: mark_format, write_mesh
+  use result_mesh, only: complete_mesh, mark_format, write_mesh
   use scene, only: is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use system, only: base_name, file_exists, make_directory, remove_file, rename_file
@@ -91,7 +91,11 @@ contains
     end do
     call make_directory(results%folder, error)
     if (allocated(error)) return
-    if (.not. file_exists(results%path)) call write_mesh(results%path, scene, error)
+    if (file_exists(results%path)) then
+      call complete_mesh(results%path, scene, error)
+    else
+      call write_mesh(results%path, scene, error)
+    end if
   end subroutine open_results
 
   !> A damaged file does not keep a run from going on: it is renamed.

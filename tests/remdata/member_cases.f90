@@ -129,6 +129,7 @@ contains
     scene%mesh%origin = scene%mesh%coordinates + 0.1_wp
     call add_die(scene, polyline(reshape([0.5_wp, 0.0_wp, 4.0_wp, 0.0_wp], [2, 2]), [0.5_wp, -1.0_wp, 0.25_wp]))
     sides%name = 'above'
+    sides%unasked = .true.
     sides%nodes = scene%mesh%sides(5)%nodes(3:1:-1, size(scene%mesh%sides(5)%nodes, 2):1:-1)
     allocate (sides%pieces(2, 3, size(sides%nodes, 2)))
     call place_on_nodes(scene%mesh%coordinates, sides)

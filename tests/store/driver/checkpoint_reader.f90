@@ -113,6 +113,7 @@ contains
     type(remesh_t), allocatable :: remesh
     type(error_t), allocatable :: ignored
     character(len=:), allocatable :: name, text, own
+    type(string_t), allocatable :: folding(:)
     logical :: at_rest
 
     call open_checkpoint(path, reader, error)
@@ -123,11 +124,12 @@ contains
     if (.not. allocated(error)) then
       if (text /= own) call fail(error, exit_input, 'another deck')
     end if
-    allocate (remesh)
+    allocate (remesh, folding(0))
     if (.not. allocated(error)) call read_remesh(reader, remesh, error)
     if (.not. allocated(error)) then
+      folding = remesh%folding
       if (remesh%generation == 1) deallocate (remesh)
-      call read_scene(deck, scene, diagnostics, remesh)
+      call read_scene(deck, scene, diagnostics, remesh, folding=folding)
       call diagnostics%error(error)
       if (allocated(remesh) .and. .not. allocated(error)) then
         if (scene%generation /= remesh%generation) call fail(error, exit_input, 'its groups or sides are not those of the deck')

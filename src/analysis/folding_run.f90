@@ -1,0 +1,72 @@
+!> How a run goes on whose body has met itself where no card gives its sides contact: as from a checkpoint, of a scene that has such
+!> contact (folding_bodies).
+module folding_run
+  use added_contact, only: take_over_state
+  use bodies, only: bodies_of_nodes
+  use cards_operations, only: operations_t, read_operation
+  use deck_reader, only: deck_t
+  use diagnostics, only: diagnostics_t
+  use errors, only: error_t
+  use exchange, only: write_checkpoint
+  use next_operation, only: remesh_of
+  use own_contact, only: list_folding
+  use remesh, only: remesh_t
+  use run_record, only: ends_now, run_t
+  use scene, only: is_solid, scene_t
+  use solution, only: solution_t
+  use text, only: add_text
+  implicit none
+  private
+  public :: save_with_contact
+
+contains
+
+  !> The checkpoint from which the run goes on: that of its last accepted step, with the contact that it needs.
+  subroutine save_with_contact(deck, diagnostics, operations, scene, solution, folding, run, error)
+    type(deck_t), intent(inout), target :: deck
+    type(diagnostics_t), intent(inout), target :: diagnostics   !! without mistakes
+    type(operations_t), intent(inout) :: operations
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: folding   !! a group of the body that has met itself
+    type(run_t), intent(in) :: run
+    type(error_t), allocatable, intent(out) :: error
+    type(remesh_t) :: remesh
+    type(scene_t) :: next
+    type(solution_t) :: after
+    integer :: operation
+
+    operation = max(scene%operation, 1)
+    call list_folding(scene, operations%folding)
+    call add_text(operations%folding, first_name(scene, folding))
+    if (scene%generation == operation) then
+      ! no mesh but the deck's own so far
+      call read_operation(deck, operations, operation, next, diagnostics)
+      next%generation = scene%generation
+    else
+      call remesh_of(scene, solution%step, remesh)
+      call read_operation(deck, operations, operation, next, diagnostics, remesh)
+    end if
+    call diagnostics%error(error)
+    if (allocated(error)) return
+    call take_over_state(solution, next, after)
+    call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, next, after, ends_now(next, after), error, &
+                          between_saves=.true.)
+  end subroutine save_with_contact
+
+  !> Name of the first group of the body that a group belongs to.
+  pure function first_name(scene, g) result(name)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    character(len=:), allocatable :: name
+    integer :: body(size(scene%mesh%coordinates, 2)), k
+
+    body = bodies_of_nodes(scene)
+    name = scene%groups(g)%name
+    do k = g - 1, 1, -1
+      if (.not. is_solid(scene%groups(k)) .or. size(scene%groups(k)%connectivity, 2) == 0) cycle
+      if (body(scene%groups(k)%connectivity(1, 1)) == body(scene%groups(g)%connectivity(1, 1))) name = scene%groups(k)%name
+    end do
+  end function first_name
+
+end module folding_run
