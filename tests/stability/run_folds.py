@@ -5,7 +5,7 @@ usage: run_folds.py [-v] [-k] [-a]       -v prints every check, -k keeps the res
 
 References are exact: by symmetry a C or a ring that is pressed shut is its half against a rigid, frictionless plane of twice the penalty;
 two blocks joined far away by a link a hundred million times softer are the two blocks alone. Before, all of these ended with 0 and
-passed through themselves, or were refused.
+passed through themselves, or were refused. What meets where no card says so is compared with the same run with such cards.
 """
 import csv
 import json
@@ -81,6 +81,41 @@ def detection(checks):
     checks.that(0.8*shut < run.history["time"][-1] < 1.2*shut, "through: where the tips meet", run.history["time"][-1])
 
 
+def unasked(checks):
+    """No card lets the sides meet, but the body has another contact: its law is theirs from where they meet, as if a card gave it."""
+    far = "DIE far\n SEGM -1. -5. 9. -5.\nCNT2D low 1 far k\nLAW k COUL2D\n AKP 2.E7 PHI 0.3\n"
+    found = []
+    for name, card in (("asked", "DIE skin SIDES low 3 back 2 up 1\nCNT2D skin skin k\n"), ("unasked", "")):
+        run = Run(checks, name, arms(0.0, "PLSTN", True, card + far, more="LIC press\n 0. 0. 1. 0.3\n") + STRAT)
+        if not run.ok:
+            return
+        found.append([run.history["force"][-1], run.history["tip"][-1], run.history["external_work"][-1]])
+        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        told = any("has met itself" in warning["text"] for warning in summary["warnings"])
+        checks.that(told == (card == ""), f"{name}: what no card asks for is told", summary["warnings"])
+        found[-1].append(summary["checks"]["energy_imbalance"])
+    checks.small(abs(found[1][3] - found[0][3]), 1e-3, "unasked: balance of energy beside that with cards")
+    off = np.abs(np.array(found[1][:3])/found[0][:3] - 1)
+    checks.small(off[0], 2e-3, "unasked: force beside that with cards")
+    checks.small(off[1], 1e-3, "unasked: place of a tip beside that with cards")
+    checks.small(off[2], 2e-3, "unasked: work beside that with cards")
+    checks.that(not any("itself" in title for title in run.history), "unasked: the columns of the history stay")
+
+
+def crushed_tube(checks):
+    """A tube crushed along its axis folds like a bellows: its folds meet inside and outside, and no card says so."""
+    text = "TITLE tube crushed\nSTATE AXISYM\nKINEM LOG\nBLOCK tube PL8LS 4 m\n 20. 0. 23. 0. 23. 40. 20. 40.\n 2 1. 16 1.\n" \
+        "LAW m EPLA\n 70000. 0.33\n LINEAR 200. 200.\nLAW film COUL2D\n PENETR 1.E-3 PHI 0.1 AUGMENT 10\n" \
+        "DIE upper PILOT 0. 40.\n SEGM 60. 40. 0. 40.\nDIE lower\n SEGM 0. 0. 60. 0.\n" \
+        "CNT2D tube 2 3 4 upper film\nCNT2D tube 1 2 4 lower film\nLIC press\n 0. 0. 1. -28.\nMOVE upper Y press\n" \
+        "STRAT 0.002 1.E-6 0.02 6 3\nEND\n"
+    run = Run(checks, "tube", text)
+    if run.ok:
+        checks.that("tube passes through itself" in run.said, "tube: says where it has met itself", run.said[-300:])
+        checks.that(abs(run.history["volume_drift"][-1]) < 0.01, "tube: volume", run.history["volume_drift"][-1])
+
+
 def linked(link, width, low, die, place, loads):
     """A block on another one, alone or joined by a soft link into one body."""
     text = "TITLE linked blocks\nSTATE PLSTN\nKINEM LOG\n" + block("low", (0, 10), (0, 2), (10, 2))
@@ -100,8 +135,9 @@ def remeshed(checks):
     is where multipliers hold the pressure in the fold."""
     found = []
     for name, whole, law in (("whole", True, "AKP 2.E7 PHI 0.3"), ("half", False, "AKP 4.E7 PHI 0."),
-                             ("multipliers", True, "PENETR 1.E-3 PHI 0.3 AUGMENT 10")):
-        contact = ("DIE skin SIDES low 3 back 2 up 1\nCNT2D skin skin k\n" if whole else
+                             ("multipliers", True, "PENETR 1.E-3 PHI 0.3 AUGMENT 10"), ("unasked", True, "AKP 2.E7 PHI 0.3")):
+        contact = ("DIE far\n SEGM -1. -5. 9. -5.\nCNT2D low 1 far k\n" if name == "unasked" else
+                   "DIE skin SIDES low 3 back 2 up 1\nCNT2D skin skin k\n" if whole else
                    "DIE line\n SEGM 9. 0. -1. 0.\nCNT2D low 3 line -33 k\n") + f"LAW k COUL2D\n {law}\n"
         path, out = os.path.join(checks.folder, f"remeshed-{name}.lag"), os.path.join(checks.folder, f"remeshed-{name}")
         with open(path, "w", encoding="utf-8") as deck:
@@ -121,6 +157,7 @@ def remeshed(checks):
         checks.that((laps == 1 and 2.0 < depth < 3.2) if whole else laps == 0, "remeshed: laps", f"{laps}, {depth}")
     checks.small(abs(found[0]/found[1] - 1), 0.02, "remeshed: force beside that of the half on a new mesh")
     checks.small(abs(found[2]/found[0] - 1), 1e-3, "remeshed: force with multipliers")
+    checks.small(abs(found[3]/found[0] - 1), 0.02, "remeshed: force where no card lets the sides meet")
 
 
 def friction(checks):
@@ -176,7 +213,7 @@ def crushed_ring(checks):
 
 def main():
     checks = Checks()
-    for case in (cees, open_walls, detection, remeshed, friction, slot):
+    for case in (cees, open_walls, detection, unasked, crushed_tube, remeshed, friction, slot):
         case(checks)
     if "-a" in sys.argv[1:]:
         crushed_ring(checks)
