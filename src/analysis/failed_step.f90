@@ -28,8 +28,8 @@ module failed_step
 
 contains
 
-  !> A step has failed: it is cut back, a new mesh is asked for, the mesh is refused, sides of a body that have met are to have contact,
-  !> or the run cannot go on.
+  !> A step has failed: it is cut back, a new mesh is asked for, the mesh is refused, sides of a body that have met are to have
+  !> contact, or the run cannot go on.
   subroutine answer_failure(scene, dt, outcome, cutbacks, solution, run, error)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt   !! of the step [time]

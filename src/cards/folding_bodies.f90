@@ -1,8 +1,8 @@
 !> Contact of the sides of a body with one another that no card gives.
 !>
-!> A part that folds onto itself, or whose hole closes, passes through itself where nothing keeps its sides apart (own_crossings). The
-!> first step that would do so is not taken; from there on all free sides of the body are deformable dies, one for each curve of them,
-!> and face one another, by the law of the first of the body's contacts that opens. So what folds nowhere has nothing of this.
+!> A part that folds onto itself, or whose hole closes, passes through itself where nothing keeps its sides apart (own_crossings).
+!> The first step that would do so is not taken; from there on all free sides of the body are deformable dies, one for each curve of
+!> them, and face one another, by the law of the first of the body's contacts that opens. So what folds nowhere has nothing of this.
 !>
 !> A body of which a card lets sides meet is left as the card has it.
 module folding_bodies
@@ -51,8 +51,8 @@ contains
     end do
   end function law_of_folds
 
-  !> Dies and contacts of a body whose sides have met, behind all others. On a new mesh its sides are those that the remesher has put
-  !> in their place.
+  !> Dies and contacts of a body whose sides have met, behind all others. On a new mesh its sides are those that the remesher has
+  !> put in their place.
   subroutine give_own_contact(name, remesh, draft)
     character(len=*), intent(in) :: name             !! of a group of the body
     type(remesh_t), intent(in), optional :: remesh

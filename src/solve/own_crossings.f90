@@ -3,8 +3,8 @@
 !> Nothing but contact keeps the sides of a body apart, so a body without it may fold through itself in equilibrium. Sides that
 !> face each other in contact overlap by the depth of contact: where a point of either is in contact, they do not count. Nor does a
 !> loop of few sides that encloses hardly anything, where a fold has used up a side; nor do neighbours, whose parabolas may cross
-!> beside their common node in a distorted mesh: the shape of elements is judged elsewhere. Neighbours that lie on one another in the
-!> ground of a notch are told apart: sides that are to have contact from there on must not overlap before.
+!> beside their common node in a distorted mesh: the shape of elements is judged elsewhere. Neighbours that lie on one another in
+!> the ground of a notch are told apart: sides that are to have contact from there on must not overlap before.
 module own_crossings
   use arc_crossings, only: crossings_between, find_meeting_arcs, most_crossings
   use bodies, only: bodies_of_nodes, elements_at_middles
@@ -132,8 +132,8 @@ contains
 
   contains
 
-    !> Two neighbours: where the contour turned back at their common node as the step began, as in the ground of a notch, and they lie
-    !> on one another at its end, the notch has closed there.
+    !> Two neighbours: where the contour turned back at their common node as the step began, as in the ground of a notch, and they
+    !> lie on one another at its end, the notch has closed there.
     subroutine look_at_ground(pair)
       integer, intent(in) :: pair(2)   !! sides
       type(offset_parabola_t) :: start(2)
