@@ -41,7 +41,8 @@ contains
     type(unheld_die_t) :: unheld
     logical :: give_up, on_probation, softer
 
-    if (outcome%passes_itself .and. .not. outcome%thins_out) then
+    ! a step of half the length has shown that it is no fault of the length
+    if (outcome%passes_itself .and. .not. outcome%thins_out .and. cutbacks > 0) then
       if (law_of_folds(scene, run%equations%laws, outcome%crossing_group) > 0) then
         run%folding = outcome%crossing_group
         run%folds = outcome%reason

@@ -6,10 +6,10 @@ module folding_run
   use cards_operations, only: operations_t, read_operation
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
-  use errors, only: error_t
+  use errors, only: error_t, exit_no_convergence, fail
   use exchange, only: write_checkpoint
   use next_operation, only: remesh_of
-  use own_contact, only: list_folding
+  use own_contact, only: list_folding, passes_itself_advice, passes_itself_words
   use remesh, only: remesh_t
   use run_record, only: ends_now, run_t
   use scene, only: is_solid, scene_t
@@ -48,6 +48,9 @@ contains
       call read_operation(deck, operations, operation, next, diagnostics, remesh)
     end if
     call diagnostics%error(error)
+    if (.not. allocated(error) .and. size(next%dies) == size(scene%dies)) &
+      call fail(error, exit_no_convergence, passes_itself_words//': '//run%folds//', where supports hold its sides', &
+                passes_itself_advice)
     if (allocated(error)) return
     call take_over_state(solution, next, after)
     call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, next, after, ends_now(next, after), error, &

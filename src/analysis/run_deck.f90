@@ -193,6 +193,7 @@ contains
       call run_and_report(options, next, after, run, error)
       code = run%exit_code
       first%folding = run%folding
+      if (allocated(run%folds)) first%folds = run%folds
       scene = next
       solution = after
       deallocate (run, next, after)

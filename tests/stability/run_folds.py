@@ -86,7 +86,8 @@ def unasked(checks):
     far = "DIE far\n SEGM -1. -5. 9. -5.\nCNT2D low 1 far k\nLAW k COUL2D\n AKP 2.E7 PHI 0.3\n"
     found = []
     for name, card in (("asked", "DIE skin SIDES low 3 back 2 up 1\nCNT2D skin skin k\n"), ("unasked", "")):
-        run = Run(checks, name, arms(0.0, "PLSTN", True, card + far, more="LIC press\n 0. 0. 1. 0.3\n") + STRAT)
+        run = Run(checks, name, arms(0.0, "PLSTN", True, card + far, more="LIC press\n 0. 0. 1. 0.3\n")
+                  + STRAT.replace("0.02 1.E-6 0.05", "0.01 1.E-6 0.01"))
         if not run.ok:
             return
         found.append([run.history["force"][-1], run.history["tip"][-1], run.history["external_work"][-1]])
@@ -95,7 +96,7 @@ def unasked(checks):
         told = any("has met itself" in warning["text"] for warning in summary["warnings"])
         checks.that(told == (card == ""), f"{name}: what no card asks for is told", summary["warnings"])
         found[-1].append(summary["checks"]["energy_imbalance"])
-    checks.small(abs(found[1][3] - found[0][3]), 1e-3, "unasked: balance of energy beside that with cards")
+    checks.small(abs(found[1][3] - found[0][3]), 2e-3, "unasked: balance of energy beside that with cards")
     off = np.abs(np.array(found[1][:3])/found[0][:3] - 1)
     checks.small(off[0], 2e-3, "unasked: force beside that with cards")
     checks.small(off[1], 1e-3, "unasked: place of a tip beside that with cards")
