@@ -41,8 +41,8 @@ contains
     type(unheld_die_t) :: unheld
     logical :: give_up, on_probation, softer
 
-    ! a step of half the length has shown that it is no fault of the length
-    if (outcome%passes_itself .and. .not. outcome%thins_out .and. cutbacks > 0) then
+    ! at once: steps that are cut back come ever closer, until what overlaps by little is taken for thinned
+    if (outcome%passes_itself .and. .not. outcome%thins_out) then
       if (law_of_folds(scene, run%equations%laws, outcome%crossing_group) > 0) then
         run%folding = outcome%crossing_group
         run%folds = outcome%reason
