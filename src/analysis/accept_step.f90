@@ -1,5 +1,6 @@
 !> Acceptance of a step: the trial state becomes the state, and every check is made.
 module accept_step
+  use absolute_cold, only: refuse_absolute_cold
   use bookkeeping, only: book_reactions, book_deformable_dies, measure_scene, book_spurious_mode, pressed_on, sample_contacts
   use confinement, only: note_confinement
   use damping, only: ease_damping, work_of_damping
@@ -35,7 +36,8 @@ module accept_step
 
 contains
 
-  !> Commit the step, add up its work, measure the scene, check it. An error is a bug of the program: exit 6.
+  !> Commit the step, add up its work, measure the scene, check it. An error is a bug of the program: exit 6; but
+  !> temperatures below absolute zero are one of the deck: exit 3.
   subroutine accept(scene, equations, dt, outcome, solution, totals, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -96,7 +98,8 @@ contains
     call sample_contacts(scene, solution)
     if (scene%remesh%on .or. has_body_springs(scene)) call note_force(scene, equations, solution)
     call keep_friction_work(scene, solution)
-    call check(solution, totals, error)
+    call refuse_absolute_cold(scene, equations%laws, solution, error)
+    if (.not. allocated(error)) call check(solution, totals, error)
     if (.not. allocated(error)) call book_fractions(scene, solution, error)
     call commit(scene, equations, solution)
     call note_confinement(scene, equations%laws, solution%work%elastic - elastic_before, solution%external_work - outside_before, &

@@ -1,5 +1,6 @@
 !> What a run ends with, whatever has happened: warnings, what it has cost and reached, summary and listing.
 module run_ending
+  use absolute_cold, only: warn_of_absolute_cold
   use accuracy_plan, only: accuracy_lines, accuracy_warning, judge_run
   use accuracy_rules, only: fineness_t
   use accuracy_samples, only: add_cost, read_sample
@@ -125,6 +126,7 @@ contains
     call warn_of_thinned_sheets(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)
     call warn_of_held_steels(scene, solution, warnings)
+    call warn_of_absolute_cold(scene, solution, warnings)
     call warn_of_floating_bodies(scene, run%equations%laws, run%equations%loose, solution, warnings)
     call warn_of_crossed_bodies(scene, run%equations%free_sides, solution, warnings)
     call warn_of_idle_dies(scene, run%equations, solution, run%totals%volume, warnings)

@@ -7,7 +7,7 @@ module steel_units
   use law_api, only: find_parameter, heat_law, law_t, solid_law
   use loads, only: by_convection, by_radiation
   use materials, only: material_t
-  use scene, only: group_t, host_of, lacks_mesh, scene_t
+  use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
   use text, only: add => add_text, string_t, to_text
   implicit none
   private
@@ -21,6 +21,8 @@ module steel_units
   real(wp), parameter :: thickest = 3.0_wp, smallest = 1.0e-4_wp
   !> No quench has more: sprays and agitated brine reach 5e4 [W/m2/K].
   real(wp), parameter :: most_convection = 5.0e5_wp
+  !> Metal pressed on metal has 1e3 to 1e5; what is to be perfect contact has enough with this [W/m2/K].
+  real(wp), parameter :: most_conductance = 2.0e6_wp
   !> Constant of radiation [W/m2/K4]; no surface has an emissivity below this.
   real(wp), parameter :: stefan_boltzmann = 5.670374e-8_wp, least_emissivity = 0.005_wp
 
@@ -47,7 +49,12 @@ contains
       end associate
       if (.not. any(abs(length/lengths - 1) < rounded)) cycle
       do k = 1, size(scene%groups)
-        if (acts_on(scene, k, g)) call judge_exchange(scene, scene%groups(k), length, conduct, warnings)
+        if (.not. acts_on(scene, k, g)) cycle
+        if (scene%groups(k)%role == role_heat_contact) then
+          call judge_contact(scene%groups(k), length, conduct, warnings)
+        else
+          call judge_exchange(scene, scene%groups(k), length, conduct, warnings)
+        end if
       end do
     end do
   end subroutine judge_units
@@ -74,6 +81,8 @@ contains
 
     yes = .false.
     associate (group => scene%groups(load))
+      if (group%role == role_heat_contact .and. size(group%connectivity) > 0) &
+        yes = any(scene%groups(g)%connectivity == group%connectivity(2, 1))
       if (all(group%exchange%kind /= [by_convection, by_radiation]) .or. size(group%connectivity) == 0) return
       if (group%host > 0) then
         yes = host_of(scene, load) == host_of(scene, g)
@@ -151,6 +160,21 @@ contains
 
     yes = abs(one - other) > rounded*max(one, other)
   end function differ
+
+  !> Heat passes to a die as well as in perfect contact, or less.
+  subroutine judge_contact(group, length, conduct, warnings)
+    type(group_t), intent(in) :: group   !! heat between sides and a die
+    real(wp), intent(in) :: length       !! unit of length [m]
+    real(wp), intent(in) :: conduct      !! 1 W/m/K [power/length/temperature]
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: largest
+
+    largest = group%heat_contact%conductance
+    if (allocated(group%heat_contact%by_pressure)) largest = largest*maxval(group%heat_contact%by_pressure(2, :))
+    largest = largest/(conduct*length)
+    if (largest > most_conductance) &
+      call add(warnings, group%name//': H reaches '//to_text(largest, 3)//' W/m2/K in the units of the steel, that of forging 1e5')
+  end subroutine judge_contact
 
   !> Convection is no stronger than in any quench, and radiation that of a surface.
   subroutine judge_exchange(scene, group, length, conduct, warnings)

@@ -3,7 +3,7 @@ module driver_checks
   use diagnostics, only: diagnostics_t
   use driver_lookup, only: driver_of_others, missing_driver
   use element_fields, only: acts_on
-  use law_api, only: find_parameter, heat_law
+  use law_api, only: find_parameter, heat_law, solid_law
   use materials, only: has_number
   use scene, only: host_of, role_body, role_second
   use scene_draft, only: draft_t
@@ -27,6 +27,8 @@ contains
       name = missing_driver(draft%scene, draft%laws, g)
       if (name == 'plastic_work') then
         call refuse(''' (QUINNEY), and its body has none: expected a LAW for solids that flows on the same body')
+      else if (name /= '' .and. follows_phases(draft, g)) then
+        call refuse(''': expected phases of META on the same body (ADDEL), or TIME here, by which the law finds them itself')
       else if (name /= '') then
         call refuse(''': expected a field, or a state of another element, of that name on its body, found none')
       else if (heats_by_volume(draft, g)) then
@@ -52,6 +54,17 @@ contains
     end subroutine refuse
 
   end subroutine refuse_missing_drivers
+
+  !> A law for solids of a steel, which is driven by phases.
+  pure function follows_phases(draft, g) result(yes)
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: g   !! number of a group of this law
+    logical :: yes
+
+    associate (law => draft%laws(draft%scene%materials(draft%scene%groups(g)%material)%law_id))
+      yes = law%of_steel .and. law%kind == solid_law
+    end associate
+  end function follows_phases
 
   !> SOURCE in a law whose bodies all stand still.
   pure function heats_by_volume(draft, g) result(yes)

@@ -87,7 +87,8 @@ module path_record
   real(wp), parameter :: ample = 2.0_wp
   integer, parameter :: most_quiet = 4
   !> A motion that bends so many times as much as that of the last estimate, and more than this share, is estimated anew.
-  real(wp), parameter :: bends_more = 2.0_wp, least_bend = 0.01_wp
+  !> One that bends by more than the third share has an estimate in any case: in the step before it another motion was judged.
+  real(wp), parameter :: bends_more = 2.0_wp, least_bend = 0.01_wp, most_bend = 0.25_wp
 
   !> Steps on a new mesh that do without an estimate: what they change beside the motion of the dies, by the return to the yield
   !> surface and contact found anew, does not fall with their length.
@@ -203,7 +204,7 @@ contains
     record%quiet_length = min(step%spare/ample, most_quiet + 1.0_wp)*dt
     ! an elastic step says nothing of those in which flow begins
     record%quiet_flow = min(step%spare/ample, most_quiet + 1.0_wp)*step%flowed
-    record%quiet_bend = max(bends_more*step%bend, least_bend)
+    record%quiet_bend = min(max(bends_more*step%bend, least_bend), most_bend)
     if (.not. step%above) record%quiet = int(max(min(step%spare/ample - 1, real(most_quiet, wp)), 0.0_wp))
   end subroutine note_path_step
 

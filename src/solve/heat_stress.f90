@@ -9,11 +9,10 @@ module heat_stress
   use errors, only: exit_no_convergence
   use fields, only: displacement_field
   use kinds, only: wp
-  use law_api, only: solid_law
   use path_heat, only: follow_heat, warmth_t
-  use path_states, only: advance_beside, begin_beside, has_path, root_energy, unbalanced_forces
+  use path_states, only: advance_beside, begin_beside, has_path, has_stress, root_energy, unbalanced_forces
   use path_stress, only: difference, stress_of
-  use scene, only: role_body, role_second, scene_t
+  use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t
   implicit none
@@ -39,7 +38,7 @@ contains
     real(wp) :: element_force(size(equations%buffers%force)), stress
     logical :: active(size(scene%groups)), done
 
-    active = is_elastic(scene, equations)
+    active = has_stress(scene, equations%laws)
     if (any(has_path(scene, equations%laws)) .or. .not. (any(active) .and. outcome%heat%estimated)) return
     call take_turn(equations, displacement_field)
     ! the books want the element forces of the step
@@ -72,18 +71,5 @@ contains
     end subroutine compare
 
   end subroutine find_stress_of_heat
-
-  !> Groups of bodies with a stress (ngroup).
-  pure function is_elastic(scene, equations) result(yes)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(in) :: equations
-    logical :: yes(size(scene%groups))
-    integer :: g
-
-    do g = 1, size(yes)
-      yes(g) = scene%groups(g)%material > 0 .and. any(scene%groups(g)%role == [role_body, role_second])
-      if (yes(g)) yes(g) = equations%laws(scene%materials(scene%groups(g)%material)%law_id)%kind == solid_law
-    end do
-  end function is_elastic
 
 end module heat_stress

@@ -15,7 +15,7 @@ module path_bounds
   use kinds, only: eps, wp
   use path_error, only: at_corner, bend_of, estimate_path
   use path_record, only: bound_scale, mean_square, path_record_t, path_step_t, stress_before
-  use path_states, only: has_path, on_nodes
+  use path_states, only: has_path, has_stress, on_nodes
   use path_stress, only: carry_errors_in_quiet
   use scene, only: scene_t
   use solution, only: solution_t
@@ -66,7 +66,7 @@ contains
     quiet = is_quiet(scene, solution, dt, outcome%path, last)
     if (quiet) then
       call go_on_in_quiet(equations, solution%path, dt, outcome)
-      call carry_errors_in_quiet(scene, equations, solution, has_path(scene, equations%laws), dt, outcome)
+      call carry_errors_in_quiet(scene, equations, solution, has_stress(scene, equations%laws), dt, outcome)
     else
       call estimate_path(scene, equations, solution, dt, at_hand, outcome, done)
     end if

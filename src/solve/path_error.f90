@@ -20,7 +20,8 @@ module path_error
   use kinematics_api, only: first_history
   use known_motion, only: proportion
   use path_record, only: bound_scale, mean_square, path_step_t
-  use path_states, only: advance_beside, begin_beside, flow_energy, has_path, on_nodes, root_energy, unbalanced_forces
+  use path_states, only: advance_beside, begin_beside, flow_energy, has_path, has_stress, on_nodes, root_energy, &
+                         unbalanced_forces
   use path_stress, only: carry_errors
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
@@ -52,23 +53,24 @@ contains
     type(drivers_t), allocatable :: drivers(:)
     real(wp), dimension(equations%dofs%ndof) :: first, residual, error
     real(wp) :: element_force(size(equations%buffers%force)), before, after, small
-    logical :: active(size(scene%groups))
+    logical, dimension(size(scene%groups)) :: active, moved
     integer :: g
 
     active = has_path(scene, equations%laws)
+    moved = has_stress(scene, equations%laws)
     call take_turn(equations, displacement_field)
     ! the books want the element forces of the step
     element_force = equations%buffers%force
     call motion_of_first_half(scene, equations, solution, dt, outcome%du, first)
     call begin_beside(solution, other)
     call drivers_of_half(equations%drivers, other%groups, .false., drivers)
-    call advance_beside(scene, equations, active, drivers, first, 0.5_wp*dt, other, done)
+    call advance_beside(scene, equations, moved, drivers, first, 0.5_wp*dt, other, done)
     if (done) then
       do g = 1, size(active)
-        if (active(g)) other%groups(g)%committed = other%groups(g)%trial
+        if (moved(g)) other%groups(g)%committed = other%groups(g)%trial
       end do
       call drivers_of_half(equations%drivers, other%groups, .true., drivers)
-      call advance_beside(scene, equations, active, drivers, outcome%du - first, 0.5_wp*dt, other, done)
+      call advance_beside(scene, equations, moved, drivers, outcome%du - first, 0.5_wp*dt, other, done)
     end if
     estimate: if (done) then
       associate (step => outcome%path)
@@ -84,7 +86,7 @@ contains
         step%motion = mean_square(on_nodes(equations, outcome%du))
         step%motion_error = mean_square(on_nodes(equations, error))
         call drop_round_off(equations, solution, step)
-        call carry_errors(scene, equations, solution, active, dt, error, 2*residual, other%groups, outcome)
+        call carry_errors(scene, equations, solution, active, moved, dt, error, 2*residual, other%groups, outcome)
         if (allocated(outcome%error)) exit estimate
         small = least_share(scene%strategy)*bound_scale(solution%path, step%stress, step%flow)
         if (max(abs(step%stress_error), abs(solution%path%stress_error), solution%path%whole_before) > small &

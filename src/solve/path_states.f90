@@ -17,7 +17,7 @@ module path_states
   use timers, only: ledger_t
   implicit none
   private
-  public :: advance_beside, begin_beside, flow_energy, has_path, of_unknowns, on_nodes, root_energy, unbalanced_forces
+  public :: advance_beside, begin_beside, flow_energy, has_path, has_stress, of_unknowns, on_nodes, root_energy, unbalanced_forces
 
 contains
 
@@ -36,6 +36,19 @@ contains
       end associate
     end do
   end function has_path
+
+  !> Groups of bodies with a stress, whether they flow or not (ngroup).
+  pure function has_stress(scene, laws) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    logical :: yes(size(scene%groups))
+    integer :: g
+
+    do g = 1, size(yes)
+      yes(g) = scene%groups(g)%material > 0 .and. any(scene%groups(g)%role == [role_body, role_second])
+      if (yes(g)) yes(g) = laws(scene%materials(scene%groups(g)%material)%law_id)%kind == solid_law
+    end do
+  end function has_stress
 
   !> The start of the step. Nothing of contact is computed.
   subroutine begin_beside(solution, other)

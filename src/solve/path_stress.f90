@@ -47,11 +47,11 @@ contains
   !> Steps without an estimate before it have added nothing yet (carry_errors_in_quiet). They are taken to have erred as this one
   !> (error_weight): what they would have added is among the errors at the start. Their motions balanced it when it was made, so
   !> that the share which is forgotten since is a motion too.
-  subroutine carry_errors(scene, equations, solution, active, dt, own, force, halves, outcome)
+  subroutine carry_errors(scene, equations, solution, active, moved, dt, own, force, halves, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations    !! with factors of a matrix of the step
     type(solution_t), intent(in) :: solution         !! its trial state is that of the step
-    logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
+    logical, intent(in) :: active(:), moved(:)       !! (ngroup) bodies that flow, and all that have a stress
     real(wp), intent(in) :: dt                       !! [time]
     real(wp), intent(in) :: own(:)                   !! (ndof) error of the motion of the step [unknown]
     real(wp), intent(in) :: force(:)                 !! (ndof) that it balances [residual]
@@ -65,22 +65,22 @@ contains
     logical :: done
 
     outcome%path%error = solution%path%error
-    call follow_heat(scene, equations, solution, active, small, outcome, warmth)
+    call follow_heat(scene, equations, solution, moved, small, outcome, warmth)
     outcome%path%warm = warmth%any
-    outcome%path%known = .not. (any_error(solution, active) .or. warmth%any &
+    outcome%path%known = .not. (any_error(solution, moved) .or. warmth%any &
                                 .or. max(outcome%path%motion_error, abs(outcome%path%stress_error)) > 0)
     if (outcome%path%known) return
     outcome%path%error = outcome%path%error + on_nodes(equations, own)
     outcome%path%jumps = contact_differs(scene, solution)
     weight = share_where_contact_changes(outcome%path, dt, solution%path)
     before = weight*(error_weight(outcome%path, dt, solution%path) - 1)
-    added = difference(halves, solution%groups, active, 2.0_wp)
-    call start_with_errors(equations, solution, active, warmth, added, before, other, errors)
+    added = difference(halves, solution%groups, moved, 2.0_wp)
+    call start_with_errors(equations, solution, moved, warmth, added, before, other, errors)
     left = 1
     if (before > 0) left = size_of(errors)
-    call advance_beside(scene, equations, active, warmth%drivers, outcome%du + small*warmth%change, dt, other, done)
+    call advance_beside(scene, equations, moved, warmth%drivers, outcome%du + small*warmth%change, dt, other, done)
     if (.not. done) return
-    if (before > 0 .and. left > 0) left = min(size_of(difference(other%groups, solution%groups, active, 1/small))/left, 1.0_wp)
+    if (before > 0 .and. left > 0) left = min(size_of(difference(other%groups, solution%groups, moved, 1/small))/left, 1.0_wp)
     call unbalanced_forces(scene, equations, solution, outcome%du, residual)
     call solve_correction(equations, residual/small, answer, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
@@ -96,7 +96,7 @@ contains
       call make_with_answer()
       if (.not. done) return
     end if
-    outcome%path%states = sum_of(difference(other%groups, solution%groups, active, 1/small), weight, added)
+    outcome%path%states = sum_of(difference(other%groups, solution%groups, moved, 1/small), weight, added)
     call add_phases(warmth, outcome%path%states)
     outcome%path%stress_whole = size_of(outcome%path%states)
     outcome%path%known = outcome%path%stress_whole &
@@ -113,8 +113,8 @@ contains
     !> The step from the start with errors, with this share of the answer. Contact, which is in the matrix alone, takes a part of
     !> the forces, and no more than all.
     subroutine make_with_answer()
-      call start_with_errors(equations, solution, active, warmth, added, before, other, errors)
-      call advance_beside(scene, equations, active, warmth%drivers, outcome%du + small*(warmth%change + share*answer), dt, other, &
+      call start_with_errors(equations, solution, moved, warmth, added, before, other, errors)
+      call advance_beside(scene, equations, moved, warmth%drivers, outcome%du + small*(warmth%change + share*answer), dt, other, &
                           done)
       if (done) call unbalanced_forces(scene, equations, solution, outcome%du, after)
     end subroutine make_with_answer
@@ -131,28 +131,28 @@ contains
 
   !> Errors at the end of a step without an estimate: what the laws make of them at its motion. What that leaves out of balance is
   !> balanced with the next estimate.
-  subroutine carry_errors_in_quiet(scene, equations, solution, active, dt, outcome)
+  subroutine carry_errors_in_quiet(scene, equations, solution, moved, dt, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(in) :: solution         !! its trial state is that of the step
-    logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
+    logical, intent(in) :: moved(:)                  !! (ngroup) bodies with a stress
     real(wp), intent(in) :: dt                       !! [time]
     type(outcome_t), intent(inout) :: outcome
-    type(state_error_t) :: none(size(active)), errors(size(active))
+    type(state_error_t) :: none(size(moved)), errors(size(moved))
     type(warmth_t) :: warmth
     type(solution_t) :: other
     real(wp) :: element_force(size(equations%buffers%force))
 
     ! the books want the element forces of the step
     element_force = equations%buffers%force
-    call follow_heat(scene, equations, solution, active, small, outcome, warmth)
+    call follow_heat(scene, equations, solution, moved, small, outcome, warmth)
     outcome%path%warm = warmth%any
-    outcome%path%known = .not. (any_error(solution, active) .or. warmth%any)
+    outcome%path%known = .not. (any_error(solution, moved) .or. warmth%any)
     if (.not. outcome%path%known) then
-      call start_with_errors(equations, solution, active, warmth, none, 0.0_wp, other, errors)
-      call advance_beside(scene, equations, active, warmth%drivers, outcome%du + small*warmth%change, dt, other, outcome%path%known)
+      call start_with_errors(equations, solution, moved, warmth, none, 0.0_wp, other, errors)
+      call advance_beside(scene, equations, moved, warmth%drivers, outcome%du + small*warmth%change, dt, other, outcome%path%known)
       if (outcome%path%known) then
-        outcome%path%states = difference(other%groups, solution%groups, active, 1/small)
+        outcome%path%states = difference(other%groups, solution%groups, moved, 1/small)
         call add_phases(warmth, outcome%path%states)
       end if
     end if
@@ -171,15 +171,15 @@ contains
   end subroutine add_phases
 
   !> The states have errors at the start of the step.
-  pure function any_error(solution, active) result(yes)
+  pure function any_error(solution, moved) result(yes)
     type(solution_t), intent(in) :: solution
-    logical, intent(in) :: active(:)   !! (ngroup) bodies that flow
+    logical, intent(in) :: moved(:)   !! (ngroup) bodies with a stress
     logical :: yes
     integer :: g
 
     yes = .false.
-    do g = 1, size(active)
-      if (active(g)) yes = yes .or. any(abs(solution%groups(g)%error) > 0)
+    do g = 1, size(moved)
+      if (moved(g)) yes = yes .or. any(abs(solution%groups(g)%error) > 0)
     end do
   end function any_error
 
@@ -197,10 +197,10 @@ contains
   end function share_where_contact_changes
 
   !> The start of the step with a small share of the errors there, and of so many times what a step adds.
-  subroutine start_with_errors(equations, solution, active, warmth, added, times, other, errors)
+  subroutine start_with_errors(equations, solution, moved, warmth, added, times, other, errors)
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
-    logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
+    logical, intent(in) :: moved(:)                  !! (ngroup) bodies with a stress
     type(warmth_t), intent(in) :: warmth             !! errors of temperatures
     type(state_error_t), intent(in) :: added(:)      !! (ngroup)
     real(wp), intent(in) :: times
@@ -210,8 +210,8 @@ contains
 
     call begin_beside(solution, other)
     call move_fields(equations%dofs, small*(of_unknowns(equations, solution%path%error) + warmth%before), other%fields)
-    do g = 1, size(active)
-      if (.not. active(g)) cycle
+    do g = 1, size(moved)
+      if (.not. moved(g)) cycle
       errors(g)%value = solution%groups(g)%error
       if (times > 0) errors(g)%value = errors(g)%value + times*added(g)%value
       other%groups(g)%committed = other%groups(g)%committed + small*errors(g)%value
@@ -219,15 +219,15 @@ contains
   end subroutine start_with_errors
 
   !> So many times the trial states less those of the step.
-  pure function difference(others, step, active, factor) result(errors)
+  pure function difference(others, step, moved, factor) result(errors)
     type(group_state_t), intent(in) :: others(:), step(:)   !! (ngroup)
-    logical, intent(in) :: active(:)                        !! (ngroup) bodies that flow
+    logical, intent(in) :: moved(:)                         !! (ngroup) bodies with a stress
     real(wp), intent(in) :: factor
-    type(state_error_t) :: errors(size(active))             !! (ngroup)
+    type(state_error_t) :: errors(size(moved))             !! (ngroup)
     integer :: g
 
-    do g = 1, size(active)
-      if (active(g)) errors(g)%value = factor*(others(g)%trial - step(g)%trial)
+    do g = 1, size(moved)
+      if (moved(g)) errors(g)%value = factor*(others(g)%trial - step(g)%trial)
     end do
   end function difference
 
@@ -246,7 +246,7 @@ contains
   !> Stress and elastic strain of errors, as trial states that can be measured.
   pure function stress_of(scene, active, errors, step) result(difference)
     type(scene_t), intent(in) :: scene
-    logical, intent(in) :: active(:)                 !! (ngroup) bodies that flow
+    logical, intent(in) :: active(:)                 !! (ngroup) bodies that are measured
     type(state_error_t), intent(in) :: errors(:)     !! (ngroup)
     type(group_state_t), intent(in) :: step(:)       !! (ngroup)
     type(group_state_t) :: difference(size(step))

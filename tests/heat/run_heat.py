@@ -11,6 +11,7 @@ usage: run_heat.py [-v] [-k]
 - `cooled`: a bar held at its ends: stress -E ALPHA dT where it is free across, -E ALPHA dT/(1 - NU) where one direction more is held;
   with KINEM LOG the stress is this over the elastic change of volume.
 - `starts`: bodies apart that start with temperatures of their own keep them; the rest has that of all.
+- `cold`: a flux that takes more heat than there is ends the run at absolute zero.
 - `squeezed`: change of volume without conduction across: dT = -SOURCE e/RHOC.
 """
 import os
@@ -18,7 +19,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "patch"))
-from patch_support import Checks, Run, at_points, np, num  # noqa: E402
+from patch_support import DONE, NO_CONVERGENCE, Checks, Run, at_points, np, num  # noqa: E402
 
 NORMS = "NORMS FORCE 1.E-12 DISPL 1.E-12\n"
 SECTION = "SECTN E FREE\nSECTN KX HELD\nSECTN KY HELD\n"
@@ -184,6 +185,24 @@ def squeezed(checks):
                     checks.small(np.max(np.abs(found/(-source*strain/rhoc) - 1)), 1e-8, f"{run.name}: rise {-source*strain/rhoc:.4g}")
 
 
+def cold(checks):
+    """A flux that takes more heat than there is ends the run below absolute zero; where none is known, the end warns."""
+    for name, radiation, code in (("kelvin", "RADIA  b 4 EPS 0.5 SIGMA 5.67E-11 ZERO 0. TS 200.\n", NO_CONVERGENCE), ("any", "", DONE)):
+        run = Run(checks, f"cold-{name}", "TITLE cold\nSTATE PLSTN\nKINEM SMALL\nBLOCK b PL8TM 4 m BILINEAR\n"
+                  "   0. 0.   10. 0.   10. 2.   0. 2.\n   5 1.   1 1.\nLAW m HEAT\n   40. 4.\nSTART T 200.\nFLUX b 2 Q -300.\n"
+                  + radiation + "STRAT 1. 0.1 1. 4 3\nPROBE coldest MIN T b\nSTOP 100.\nEND\n", code)
+        if not run.ok:
+            continue
+        with open(os.path.join(run.out, f"cold-{name}.log"), encoding="utf-8") as file:
+            listing = file.read()
+        checks.that("below absolute zero" in listing, f"cold, {name}: says why")
+        coldest = run.history["coldest"]
+        if code == DONE:
+            checks.that("below absolute zero of any scale" in listing and coldest[-1] < -460, f"cold, {name}: a warning", coldest[-1])
+        else:
+            checks.that(coldest[-1] >= -1 > 2*coldest[-1] - coldest[-2], f"cold, {name}: as it gets there", coldest[-2:])
+
+
 def main():
     checks = Checks()
     steady(checks)
@@ -192,6 +211,7 @@ def main():
     cooled(checks)
     starts(checks)
     squeezed(checks)
+    cold(checks)
     checks.end()
 
 

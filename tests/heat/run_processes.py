@@ -96,6 +96,15 @@ PHASE  MARTENSITE
    KTP    1E-4
 """
 
+PRESSED = """LAW film COUL2D
+   PHI 0.1
+DIE die
+   SEGM 4. -1.   4. 5.
+CNT2D bar 2 die film
+COU2DC bar 2 die H {conductance} HO {conductance} REACH 1.
+TDIE die T 50.
+"""
+
 
 def law_file(checks):
     """The steel of these decks, beside them."""
@@ -439,6 +448,8 @@ def told(checks):
              ("in m", "ENERGY 1.E6", "", "CONVE bar 2 H 5.E4 TS 20.\nRADIA bar 3 EPS 0.8 SIGMA 5.67E-8 ZERO 273.15 TS 20.\n", "4000 x 4000 mm large"),
              ("minutes", "ENERGY 1. TIME 60.", "", "CONVE bar 2 H 1. TS 20.\n", "the unit of length is 7.75 mm, which none is"),
              ("W/m2/K", "ENERGY 1.", "", "CONVE bar 2 H 1000. TS 20.\n", "H reaches 1000000 W/m2/K"),
+             ("pressed", "ENERGY 1.", "", PRESSED.format(conductance=50.), None),
+             ("pressed in W/m2/K", "ENERGY 1.", "", PRESSED.format(conductance=5000.), "bar.2/die/COU2DC: H reaches 5000000 W/m2/K"),
              ("W/m2/K4", "ENERGY 1.", "", "RADIA bar 3 EPS 0.8 SIGMA 5.67E-8 ZERO 273.15 TS 20.\n", "SIGMA is 5.67e-11 there"),
              ("two times", "ENERGY 1.", "TIME 60.", "CONVE bar 2 H 1. TS 20.\n", "both are the seconds of the unit of time"),
              ("two stresses", "ENERGY 1.E-3 CONDUCT 1.E-3 QUINNEY 0.9", "", "CONVE bar 2 H 1.E-3 TS 20.\n", "1 MJ/m3 is 1 MPa"),

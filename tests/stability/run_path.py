@@ -388,6 +388,44 @@ def carried(checks):
         compare(checks, "carried", name, deck, words, ((step, WIDE), (step/2, WIDE), (step, "")), step/16, OFF, CARRIED)
 
 
+LAYERS = """TITLE  A strip of an elastic layer and one that flows, bent, held, let go and held
+STATE  PLSTN
+KINEM  LOG
+BLOCK  a PL8LS 4 hard
+   0. 0. 40. 0. 40. 1. 0. 1.
+   20 1. 2 1.
+BLOCK  b PL8LS 4 soft
+   0. 1. 40. 1. 40. 2. 0. 2.
+   20 1. 2 1.
+JOIN   a 3 b 1
+LAW    hard ELA
+   200000. 0.3
+LAW    soft EPLA
+   70000. 0.33
+   LINEAR 50. 700.
+FIXED  a 4 XY
+FIXED  b 4 XY
+TRACT  a 2 Y 4. push
+TRACT  b 2 Y 4. push
+LIC    push
+   0. 0. 1. 1. 3. 1. 4. 0. 6. 0.
+STRAT  {step} 1.E-5 {step} 20 4
+PROBE  tip NODE UY 40. 0.
+END
+"""
+
+
+def layered(checks):
+    """A layer that does not flow bears what the errors of the motion strain it by: while nothing moves they do not grow."""
+    run, fine = (Run(checks, f"layers-{step:g}", LAYERS.format(step=step)) for step in (0.05, 0.003))
+    if run.ok and fine.ok:
+        tip = run.history["tip"]
+        true = abs(tip[-1] - fine.history["tip"][-1])/np.sum(np.abs(np.diff(tip)))
+        told = summary(run)[0]["path_error_motion"]
+        print(f"{'layers':22s} {len(tip):6d} {100*true:9.4f} {100*told:9.4f} {told/true:11.2f}")
+        checks.that(1/FACTOR <= told/true <= FACTOR, "layers: told error of the motion", told/true)
+
+
 def heated(checks):
     """Errors of the stress at the end, with those of temperatures and phases, against those of short steps of TR-BDF2."""
     print(f"\n{'heated':22s} {'steps':>6s} {'error %':>9s} {'told %':>9s} {'effectivity':>11s}")
@@ -532,6 +570,7 @@ def main():
         bounded(checks)
         estimated(checks)
         carried(checks)
+        layered(checks)
         heated(checks)
         elastic(checks)
         begun(checks)
