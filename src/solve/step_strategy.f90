@@ -22,6 +22,9 @@ module step_strategy
   !> estimate foresees the next step and not the one after it (K. Gustafsson, ACM Trans. Math. Software 17 (1991) 533-554, limits
   !> the growth too). With 2 steps are fewer by a tenth, but the longest ones of a furnace left 2e-6 of martensite untempered.
   real(wp), parameter :: most_growth = 1.5_wp
+  !> They grow up to this share of what their errors foresee: steps that were all as long as their bounds let them would make the
+  !> most of these, and errors of a neck grow with every one.
+  real(wp), parameter :: cautious = 0.6_wp
   !> A time is reached when it is this close, relative to the end of the scene.
   real(wp), parameter :: reached = 64*eps
 
@@ -112,10 +115,15 @@ contains
     real(wp), intent(in), optional :: added        !! what counts as iterations beside them
     real(wp), intent(in), optional :: remembered   !! `by_iterations` of this step [time]
     real(wp) :: next
+    real(wp) :: most
 
     associate (s => scene%strategy)
       next = plain_proposal(scene, dt, proposed, iterations, added)
-      if (present(remembered) .and. factor_of(scene, iterations, added) >= 1) next = max(next, min(remembered, most_growth*dt))
+      if (present(remembered) .and. factor_of(scene, iterations, added) >= 1) then
+        most = most_growth
+        if (present(growth)) most = min(most, cautious*growth)
+        next = max(next, min(remembered, most*dt))
+      end if
       if (strain*next > foresight*s%strain_bound*dt) next = foresight*s%strain_bound/strain*dt
       if (present(growth)) next = min(next, min(growth, s%largest_step/dt)*dt)
       next = min(max(next, s%least_step), s%largest_step)
