@@ -1,28 +1,22 @@
-!> The requested size of elements at a point: that of squares, and in thin parts a length that is larger.
+!> The requested size of elements at a point of a body.
 !>
-!> Squares (`square_sizes`) have a largest size for want of anything better where neither the error nor the geometry asks for less.
-!> In a part of few such elements across, as a strip, a wall or a flash, this keeps a number of them across; along it, elements
-!> may be longer, so many times as wide at most, as far as the error, bends and contacts let them: sizes of squares for
-!> a largest size that
-!> is so many times larger.
+!> All bodies have it from one field with one set of limits, or each of them has its own (`of_body`): a pad that a fine sheet lies
+!> on is made for its own shape, and fine only near the sheet.
 module size_field
   use block_mesh, only: polygon_area
+  use body_sizes, only: body_sizes_t, directed_size_of, lengthen
   use directed_sizes, only: no_stretch, ratio_of
-  use graded_sizes, only: slope_of
   use kinds, only: wp
-  use square_sizes, only: is_in_window, need_t, old_mesh_t, requested_size, set_up_squares, size_at, size_limits_t, square_field_t
   use size_windows, only: size_window_t
-  use thin_parts, only: direction_along, set_up_thin, thin_field_t, thin_point_t
+  use square_sizes, only: is_in_window, need_t, old_mesh_t, requested_size, set_up_squares, size_limits_t, square_size => size_at
   implicit none
   private
   public :: size_limits_t, need_t, size_field_t, old_mesh_t, requested_size
-  public :: set_up_sizes, lengthen, of_squares, size_at, directed_size_at, is_in_window, elements_needed
+  public :: set_up_sizes, lengthen, join_bodies, of_squares, size_at, directed_size_at, is_in_window, elements_needed
 
-  type, extends(square_field_t) :: size_field_t
-    !> Elements may be longer than wide: lengths, and where and along which directions.
-    logical :: is_directed = .false.
-    type(square_field_t) :: lengths
-    type(thin_field_t) :: thin
+  type, extends(body_sizes_t) :: size_field_t
+    !> Sizes of each body by the number of its material; not allocated: those of this field hold for all.
+    type(body_sizes_t), allocatable :: of_body(:)
   end type size_field_t
 
 contains
@@ -38,25 +32,52 @@ contains
     call set_up_squares(limits, needs, field%square_field_t, old, windows)
   end subroutine set_up_sizes
 
-  !> Let elements be longer than wide in thin parts.
-  pure subroutine lengthen(lengths, thin, field)
-    type(square_field_t), intent(in) :: lengths   !! sizes of squares with a larger limit
-    type(thin_point_t), intent(in) :: thin(:)     !! (nthin)
-    type(size_field_t), intent(inout) :: field
+  !> One field of bodies that have sizes of their own, all on the same old mesh or none.
+  pure subroutine join_bodies(bodies, field)
+    type(body_sizes_t), intent(in) :: bodies(:)   !! (nbody) by material, at least one
+    type(size_field_t), intent(out) :: field
+    integer :: b, e
 
-    field%is_directed = size(thin) > 0
-    if (.not. field%is_directed) return
-    field%lengths = lengths
-    call set_up_thin(thin, field%limits%largest, field%thin)
-  end subroutine lengthen
+    field%square_field_t = bodies(1)%square_field_t
+    field%is_directed = any(bodies%is_directed)
+    allocate (field%of_body, source=bodies)
+    if (.not. field%has_mesh) return
+    ! bodies with sizes of their own share no nodes
+    do e = 1, size(field%mesh%material)
+      b = field%mesh%material(e)
+      associate (corners => field%mesh%connectivity(1:4, e))
+        field%sizes(corners) = bodies(b)%sizes(corners)
+      end associate
+    end do
+  end subroutine join_bodies
 
   !> The same sizes for squares.
   pure function of_squares(field) result(squares)
     type(size_field_t), intent(in) :: field
     type(size_field_t) :: squares
+    integer :: b
 
     squares%square_field_t = field%square_field_t
+    if (.not. allocated(field%of_body)) return
+    allocate (squares%of_body(size(field%of_body)))
+    do b = 1, size(field%of_body)
+      squares%of_body(b)%square_field_t = field%of_body(b)%square_field_t
+    end do
   end function of_squares
+
+  !> Size requested at a point of a material: of a square, or the width [length].
+  pure function size_at(field, material, x) result(h)
+    type(size_field_t), intent(in) :: field
+    integer, intent(in) :: material
+    real(wp), intent(in) :: x(2)   !! [length]
+    real(wp) :: h
+
+    if (allocated(field%of_body)) then
+      h = square_size(field%of_body(material), material, x)
+    else
+      h = square_size(field, material, x)
+    end if
+  end function size_at
 
   !> Width and stretch (`directed_sizes`) requested at a point of a material.
   pure subroutine directed_size_at(field, material, x, across, stretch)
@@ -65,19 +86,12 @@ contains
     real(wp), intent(in) :: x(2)          !! [length]
     real(wp), intent(out) :: across       !! [length]
     real(wp), intent(out) :: stretch(2)   !! [-]
-    real(wp) :: direction(2), reach, along
 
-    across = size_at(field, material, x)
-    stretch = no_stretch
-    if (.not. field%is_directed) return
-    call direction_along(field%thin, x, direction, reach)
-    if (.not. any(abs(direction) > 0)) return
-    along = size_at(field%lengths, material, x)
-    ! where the width has limits of its own, so many times that as elsewhere
-    along = min(along, across*field%lengths%limits%largest/field%limits%largest)
-    ! from squares at the ends of the part it grows as sizes do
-    if (along > across) along = min(along, across + slope_of(field%limits%gradation)*reach)
-    stretch = 0.5_wp*log(max(along/across, 1.0_wp))*direction
+    if (allocated(field%of_body)) then
+      call directed_size_of(field%of_body(material), material, x, across, stretch)
+    else
+      call directed_size_of(field, material, x, across, stretch)
+    end if
   end subroutine directed_size_at
 
   !> Elements that the sizes need, by the elements of the old mesh: the integral of 1/(width length). 0 where there is no old mesh.

@@ -2,16 +2,19 @@
 module sizes_of_scene
   use arcs_on_die, only: placed_piece
   use block_mesh, only: polygon_area
+  use body_sizes, only: body_sizes_t, lengthen
   use contact_misfits, only: needs_of_misfits
   use contour_volume, only: volume_inside
   use contour_needs, only: geometry_settings_t, needs_of_boundary, needs_of_die
   use corrected_contours, only: contour_t
   use dies, only: is_deformable
+  use facing_sizes, only: needs_of_others
   use fields, only: pilot_field
   use kinds, only: wp
+  use limits_of_bodies, only: bodies_have_sizes, limits_of_all, limits_of_body, materials_of_contours, some_contours
   use scene, only: axisymmetric, scene_t
   use remesh_defaults, only: elements_at_first
-  use size_field, only: lengthen, need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
+  use size_field, only: join_bodies, need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
   use size_windows, only: limits_around, place_window, size_window_t
   use solution, only: solution_t
   use square_sizes, only: set_up_squares, square_field_t
@@ -30,7 +33,8 @@ module sizes_of_scene
 
 contains
 
-  !> Sizes by the error of the strains, by the curvature of the contour and of nearby dies, and by contact intervals.
+  !> Sizes by the error of the strains, by the curvature of the contour and of nearby dies, and by contact intervals; where bodies
+  !> have sizes of their own, by those of others that lie near.
   subroutine requested_sizes(scene, solution, contours, first, same, sizes, learned)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -39,34 +43,81 @@ contains
     logical, intent(in) :: same    !! those of the old elements, whatever the error and the geometry ask for
     type(size_field_t), intent(out) :: sizes
     type(old_mesh_t), intent(in), optional :: learned   !! with `first`: sizes that a run on such a mesh has asked for
-    type(state_pieces_t) :: pieces
-    type(transfer_mesh_t) :: mesh
-    type(old_mesh_t) :: old, narrow
-    type(size_limits_t) :: limits, longer
+    type(old_mesh_t), allocatable :: old, narrow
     type(size_window_t), allocatable :: windows(:)
-    type(need_t), allocatable :: needs(:), misfits(:)
-    type(thin_point_t), allocatable :: thin(:)
-    real(wp) :: error, now
-    logical :: shown
-    integer :: e, c
+    type(need_t), allocatable :: misfits(:), nearby(:)
+    type(body_sizes_t), allocatable :: alone(:), bodies(:)
+    integer :: body_of(size(contours)), b
 
-    if (scene%remesher%smallest > 0) then
-      limits%smallest = scene%remesher%smallest
-      limits%at_bends = scene%remesher%smallest_at_bends
-    end if
-    if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
     call place_windows(scene, solution, windows)
-    longer = limits
-    call find_thin_parts([(contours(c)%boundary, c=1, size(contours))], limits%largest, thin)
-    if (size(thin) > 0) longer%largest = longest_size(scene, contours, first, limits%largest)
     allocate (misfits(0))
-    if (.not. first) call needs_of_misfits(scene, solution, misfits)
-    call needs_of_geometry(scene, solution, contours, limits_around(limits, windows), misfits, needs)
     if (first) then
-      call set_up_sizes(limits, needs, sizes, learned, windows)
-      call let_be_longer(learned)
+      if (present(learned)) old = learned
+      if (present(learned)) narrow = learned
+    else
+      call needs_of_misfits(scene, solution, misfits)
+      call sizes_by_errors(scene, solution, same, size(windows) > 0, old, narrow)
+      if (same) then
+        call set_up_sizes(size_limits_t(), [need_t ::], sizes, old)
+        return
+      end if
+    end if
+    if (.not. bodies_have_sizes(scene%remesher)) then
+      call sizes_of_contours(limits_of_all(scene), contours, [need_t ::], sizes%body_sizes_t)
       return
     end if
+    body_of = materials_of_contours(scene, contours)
+    allocate (alone(size(scene%remesher%contours)), bodies(size(scene%remesher%contours)))
+    do b = 1, size(bodies)
+      call sizes_of_contours(limits_of_body(scene, b), some_contours(contours, body_of == b), [need_t ::], alone(b))
+    end do
+    do b = 1, size(bodies)
+      call needs_of_others(contours, body_of, alone, b, nearby)
+      call sizes_of_contours(limits_of_body(scene, b), some_contours(contours, body_of == b), nearby, bodies(b))
+    end do
+    call join_bodies(bodies, sizes)
+
+  contains
+
+    !> Sizes within limits: of squares; in thin parts lengths for a larger limit, with what the geometry requires below that.
+    subroutine sizes_of_contours(limits, some, others, field)
+      type(size_limits_t), intent(in) :: limits
+      type(contour_t), intent(in) :: some(:)   !! of one body, or of all
+      type(need_t), intent(in) :: others(:)    !! of other bodies
+      type(body_sizes_t), intent(out) :: field
+      type(size_limits_t) :: longer
+      type(square_field_t) :: lengths
+      type(need_t), allocatable :: needs(:), needs_of_lengths(:)
+      type(thin_point_t), allocatable :: thin(:)
+      integer :: c
+
+      call needs_of_geometry(scene, solution, some, limits_around(limits, windows), misfits, others, needs)
+      call set_up_squares(limits, needs, field%square_field_t, narrow, windows)
+      call find_thin_parts([(some(c)%boundary, c=1, size(some))], limits%largest, thin)
+      longer = limits
+      if (size(thin) > 0) longer%largest = longest_size(scene, some, first, limits%largest)
+      if (.not. longer%largest > limits%largest) return
+      call needs_of_geometry(scene, solution, some, limits_around(longer, windows), misfits, others, needs_of_lengths)
+      call set_up_squares(longer, needs_of_lengths, lengths, old, windows)
+      call lengthen(lengths, thin, field)
+    end subroutine sizes_of_contours
+
+  end subroutine requested_sizes
+
+  !> Sizes that the old elements are wanted of by their errors, and those with a number of elements across slender bodies.
+  subroutine sizes_by_errors(scene, solution, same, has_windows, old, narrow)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    logical, intent(in) :: same          !! the sizes that they have
+    logical, intent(in) :: has_windows   !! where their matter began is of account
+    type(old_mesh_t), allocatable, intent(out) :: old, narrow
+    type(state_pieces_t) :: pieces
+    type(transfer_mesh_t) :: mesh
+    real(wp) :: error, now
+    logical :: shown
+    integer :: e
+
+    allocate (old)
     call solid_pieces(scene, pieces, solution)
     pieces%axisymmetric = .false.
     call mesh_of(pieces, mesh)
@@ -77,10 +128,7 @@ contains
     do e = 1, size(old%requested)
       old%requested(e) = sqrt(polygon_area(old%nodes(:, old%connectivity(1:4, e))))
     end do
-    if (same) then
-      call set_up_sizes(size_limits_t(), [need_t ::], sizes, old)
-      return
-    end if
+    if (same) return
     if (scene%remesh%estimate) then
       shown = sum(solution%estimate%strain_sums(2, :)) > strained*size(old%requested)
       do e = 1, size(old%requested)
@@ -90,27 +138,10 @@ contains
         if (.not. shown) old%requested(e) = min(old%requested(e), now)
       end do
     end if
-    if (size(windows) > 0) old%origin = scene%mesh%origin
+    if (has_windows) old%origin = scene%mesh%origin
     narrow = old
     call keep_across(scene, pieces, narrow%requested)
-    call set_up_sizes(limits, needs, sizes, narrow, windows)
-    call let_be_longer(old)
-
-  contains
-
-    !> Lengths in thin parts: sizes for a larger limit, with what the geometry requires below that.
-    subroutine let_be_longer(mesh_before)
-      type(old_mesh_t), intent(in), optional :: mesh_before
-      type(square_field_t) :: lengths
-      type(need_t), allocatable :: needs_of_lengths(:)
-
-      if (.not. longer%largest > limits%largest) return
-      call needs_of_geometry(scene, solution, contours, limits_around(longer, windows), misfits, needs_of_lengths)
-      call set_up_squares(longer, needs_of_lengths, lengths, mesh_before, windows)
-      call lengthen(lengths, thin, sizes)
-    end subroutine let_be_longer
-
-  end subroutine requested_sizes
+  end subroutine sizes_by_errors
 
   !> A number of elements across slender bodies: they bend.
   pure subroutine keep_across(scene, pieces, requested)
@@ -152,12 +183,13 @@ contains
   end function longest_size
 
   !> Requirements of bends and contacts, and where sides lie off their dies.
-  subroutine needs_of_geometry(scene, solution, contours, limits, misfits, needs)
+  subroutine needs_of_geometry(scene, solution, contours, limits, misfits, others, needs)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(contour_t), intent(in) :: contours(:)
     type(size_limits_t), intent(in) :: limits             !! nowhere narrower than those of any place
     type(need_t), intent(in) :: misfits(:)                !! (n)
+    type(need_t), intent(in) :: others(:)                 !! (n) of other bodies
     type(need_t), allocatable, intent(out) :: needs(:)    !! (nneed)
     type(geometry_settings_t) :: settings
     type(need_t), allocatable :: bends(:), more(:)
@@ -174,6 +206,7 @@ contains
                         scene%dies(d)%closed, settings, limits, more)
       bends = [bends, more]
     end do
+    bends = [bends, others]
     do c = 1, size(contours)
       call needs_of_boundary(contours(c)%boundary, settings, limits, more, bends)
       needs = [needs, more]

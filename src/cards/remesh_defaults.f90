@@ -8,7 +8,7 @@ module remesh_defaults
   use vectors, only: length_of
   implicit none
   private
-  public :: elements_at_first, area_in, narrow, set_default_limits, set_default_sizes
+  public :: elements_at_first, area_in, facing_ratio, narrow, set_default_limits, set_default_sizes
 
   !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
   !> (angles from 20 degrees, scaled Jacobians from 0.25, middle nodes in the middle third), and each is some steps of distortion
@@ -26,11 +26,14 @@ module remesh_defaults
   !> Cutbacks in a row; steps between two meshes.
   integer, parameter :: cutbacks = 4, steps = 5
 
-  !> Elements of a first mesh, and across its most slender body: a strip of thickness t has area/perimeter = t/2.
+  !> Elements of the first mesh of a body, and across it if it is slender: a strip of thickness t has area/perimeter = t/2.
   integer, parameter :: elements_at_first = 150, elements_across = 4
   !> The smallest element over the largest, and elements of later meshes over those of the first.
   real(wp), parameter :: smallest_share = 0.2_wp
   integer, parameter :: growth = 3
+  !> Elements of a body where a finer one lies on it, over those of that one. Both are known by the points of one of them, and the
+  !> coarser one bends into parabolas as long as its sides: with twice the size reactions are within 0.5 % of those of meshes alike.
+  real(wp), parameter :: facing_ratio = 2.0_wp
 
 contains
 
@@ -52,26 +55,26 @@ contains
     if (has_dies) rules%narrow = narrow
   end subroutine set_default_limits
 
-  !> Sizes and number of elements of bodies that are given by their contours: squares, so many in all and across the most slender
-  !> body.
+  !> Sizes and number of elements of bodies that are given by their contours: squares, so many in each body, and across each that is
+  !> slender. One of several bodies has no smaller ones than a share of its own, or than lie on the finest of the others.
   pure subroutine set_default_sizes(options)
     type(remesher_options_t), intent(inout) :: options
-    real(wp) :: area, size_of, all
+    real(wp) :: area(size(options%contours)), own(size(options%contours))
     integer :: k
 
     if (options%largest > 0) return
-    size_of = huge(size_of)
-    all = 0
-    do k = 1, size(options%contours)
-      area = area_in(options%contours(k)%pieces)
-      if (.not. area > 0) return
-      all = all + area
-      size_of = min(size_of, 2*area/(elements_across*perimeter_of(options%contours(k)%pieces)))
+    do k = 1, size(area)
+      area(k) = area_in(options%contours(k)%pieces)
+      if (.not. area(k) > 0) return
+      own(k) = min(2*area(k)/(elements_across*perimeter_of(options%contours(k)%pieces)), sqrt(area(k)/elements_at_first))
     end do
-    size_of = min(size_of, sqrt(all/elements_at_first))
-    options%largest = size_of
-    options%smallest = smallest_share*size_of
-    if (options%most_elements == 0) options%most_elements = growth*ceiling(all/size_of**2)
+    options%largest = maxval(own)
+    options%smallest = smallest_share*minval(own)
+    if (size(own) > 1) then
+      options%contours%largest = own
+      options%contours%smallest = min(smallest_share*own, facing_ratio*minval(own))
+    end if
+    if (options%most_elements == 0) options%most_elements = growth*ceiling(sum(area/own**2))
   end subroutine set_default_sizes
 
   !> Area on the left of closed parabolas: half the integral of x dy - y dx, exact for each [length^2].

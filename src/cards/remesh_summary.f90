@@ -1,7 +1,7 @@
 !> Lines of a scene's summary on remeshing: limits at which a new mesh is due, and what it will be.
 module remesh_summary
   use kinds, only: wp
-  use remesher_options, only: remesher_options_t
+  use remesher_options, only: bodies_have_sizes, remesher_options_t
   use remesher_windows, only: window_text
   use remeshing, only: criterion_names, has_limit, is_upper, ncriteria, never
   use scene, only: scene_t
@@ -72,6 +72,14 @@ contains
       call add_text(lines, 'new mesh   elements of '//to_text(wish%smallest, 4)//' to '//to_text(wish%largest, 4) &
                     //most_text(wish%most_elements)//bends_text(wish)//', error of the strain '//to_text(100*wish%strain_error) &
                     //' %')
+      if (bodies_have_sizes(wish)) then
+        do k = 1, size(wish%contours)
+          associate (body => wish%contours(k))
+            call add_text(lines, 'new mesh   '//scene%groups(body%group)%name//': elements of '//to_text(body%smallest, 4)//' to ' &
+                          //to_text(body%largest, 4))
+          end associate
+        end do
+      end if
       do k = 1, size(wish%windows)
         call add_text(lines, 'window     '//window_text(wish%windows(k), name_of_die(scene, wish%windows(k)%die)))
       end do

@@ -4,7 +4,7 @@ module remesher_rows
   use deck_cursor, only: cursor_t
   use kinds, only: pi, wp
   use remeshing, only: never, remesh_rules_t
-  use remesher_options, only: by_free, by_gmsh, has_zones, remesher_options_t
+  use remesher_options, only: by_free, by_gmsh, has_contours, has_zones, remesher_options_t
   use scene_draft, only: words_of
   use text, only: string_t
   implicit none
@@ -142,6 +142,10 @@ contains
     options%smallest = options%smallest/factor
     options%largest = options%largest/factor
     options%smallest_at_bends = options%smallest_at_bends/factor
+    if (has_contours(options)) then
+      options%contours%smallest = options%contours%smallest/factor
+      options%contours%largest = options%contours%largest/factor
+    end if
     options%most_elements = nint(options%most_elements*factor**2)
     options%windows%smallest = options%windows%smallest/factor
     options%windows%largest = options%windows%largest/factor

@@ -12,6 +12,7 @@ module narrow_contacts
   use fields, only: displacement_field
   use kinds, only: wp
   use quadrature, only: line_rule
+  use remesher_options, only: bodies_have_sizes
   use scene, only: axisymmetric, is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use state_variables, only: find_variable
@@ -106,7 +107,7 @@ contains
     end do
     narrow%die = d
     narrow%across = width(widest)/longest(widest)
-    narrow%ratio = longest(widest)/max(scene%remesher%smallest, width(widest)/scene%remesher%across_contact)
+    narrow%ratio = longest(widest)/max(least_size(scene, middles), width(widest)/scene%remesher%across_contact)
     do k = 1, size(side)
       if (place(ends(1, k)) /= widest .or. longest(middles(k)) < longest(widest)) cycle
       narrow%group = group(k)
@@ -115,6 +116,25 @@ contains
     end do
     if (narrow%ratio > 1 .or. narrow%across < few_sides) narrow%error = error_behind(scene, solution, x, middles)
   end subroutine measure_die
+
+  !> The smallest element that the bodies behind sides may have [length].
+  pure function least_size(scene, middles) result(least)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: middles(:)     !! nodes in the middle of the sides
+    real(wp) :: least
+    integer, allocatable :: body(:), element(:), side(:)
+    integer :: k
+
+    least = scene%remesher%smallest
+    if (.not. bodies_have_sizes(scene%remesher)) return
+    call find_bodies_behind(scene, middles, body, element, side)
+    least = huge(least)
+    associate (cards => scene%remesher%contours)
+      do k = 1, size(cards)
+        if (any(body == cards(k)%group)) least = min(least, cards(k)%smallest)
+      end do
+    end associate
+  end function least_size
 
   !> Share of the length of each side that its points in contact stand for: those at its ends for a quarter each, in the middle for
   !> half, others by their weight.

@@ -7,7 +7,8 @@ module remesher_options
   use zone_marks, only: contour_card_t, zone_card_t, zone_mark_t
   implicit none
   private
-  public :: own_mesh_t, remesher_options_t, has_zones, has_contours, elements_allowed, number_of_cuts, smallest_anywhere
+  public :: own_mesh_t, remesher_options_t, bodies_have_sizes, has_zones, has_contours, elements_allowed, number_of_cuts
+  public :: smallest_anywhere
   public :: as_it_comes, by_zones, by_gmsh, by_free
 
   !> Mesher: zones, and where they fail the free mesher, then Gmsh; zones alone; Gmsh alone; the free mesher alone.
@@ -104,6 +105,15 @@ contains
     n = 0
     if (allocated(options%cuts)) n = size(options%cuts)
   end function number_of_cuts
+
+  !> Each of several bodies has sizes of its own.
+  pure function bodies_have_sizes(options) result(yes)
+    type(remesher_options_t), intent(in) :: options
+    logical :: yes
+
+    yes = has_contours(options)
+    if (yes) yes = all(options%contours%largest > 0)
+  end function bodies_have_sizes
 
   pure function has_contours(options) result(yes)
     type(remesher_options_t), intent(in) :: options

@@ -42,6 +42,8 @@ module zone_marks
     !> Parabolas (2, 3, npiece) [length], and the row of the card each comes of: the number of its side of the body.
     real(wp), allocatable :: pieces(:, :, :)
     integer, allocatable :: row(:)
+    !> Sizes of its elements where bodies have their own; 0: those of all bodies [length].
+    real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
   end type contour_card_t
 
 end module zone_marks
