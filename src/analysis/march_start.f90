@@ -19,11 +19,12 @@ module march_start
   use results, only: open_results, save_fields
   use run_record, only: run_t, save_all
   use scene, only: scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use step_outcome, only: outcome_t
   use sudden_loads, only: sudden_load_words
   use system, only: join_path
   use text, only: to_text, two_digits
+  use wall_contact, only: find_wall_sides
   use watch_mesh, only: ask_for_trims, estimate_stress, mesh_is_due, note_first_narrow
   implicit none
   private
@@ -44,6 +45,9 @@ contains
     if (.not. allocated(error)) call require_memory(8*sum(run%equations%solves%solver%estimated_entries), &
       'the factors of the matrix', error, address_space=run%equations%team%most*blas_buffer)
     if (allocated(error)) return
+    ! an operation begins with the deck's own mesh and the motion of those before it
+    if (scene%fields(displacement_field)%declared) &
+      call find_wall_sides(scene, run%equations%laws, run%equations%dofs, present_coordinates(scene, solution), run%equations%wall)
     call start_drivers(scene, run%equations%laws, solution, run%equations%drivers)
     call measure_scene(scene, run%equations, solution, run%totals)
     if (scene%remesh%estimate) call set_up_estimator(scene, run%equations%laws, run%estimator)

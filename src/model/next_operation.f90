@@ -31,6 +31,7 @@ contains
     remesh%origin = scene%mesh%origin
     remesh%own_mesh = scene%remesher%own_mesh
     allocate (remesh%sides, source=scene%mesh%sides)
+    if (allocated(scene%walls)) remesh%walls = scene%walls
     allocate (remesh%groups(size(scene%groups)))
     do g = 1, size(scene%groups)
       remesh%groups(g)%name = scene%groups(g)%name

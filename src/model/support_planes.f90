@@ -35,22 +35,26 @@ contains
   end function plane_beside
 
   !> Does a support hold nodes on a straight line against motion across it, and across it alone? The axis is a wall already.
-  pure function holds_plane(scene, number) result(yes)
+  pure function holds_plane(scene, number, x) result(yes)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: number
+    real(wp), intent(in), optional :: x(:, :)   !! (2, nnode) where nodes are; otherwise where their material began [length]
     logical :: yes
-    real(wp) :: extent(2)
+    real(wp) :: extent(2), first(2, size(scene%fixations(number)%nodes))
     integer :: c, f
 
     associate (one => scene%fixations(number))
       c = one%component
       yes = one%field == displacement_field .and. .not. abs(one%amplitude) > 0 .and. size(one%nodes) > 2
       if (.not. yes) return
-      associate (first => scene%mesh%origin(:, one%nodes))
-        extent = maxval(first, 2) - minval(first, 2)
-        yes = extent(c) <= straight*extent(3 - c)
-        if (c == 1 .and. scene%plane_state == axisymmetric) yes = yes .and. any(abs(first(1, :)) > straight*extent(2))
-      end associate
+      if (present(x)) then
+        first = x(:, one%nodes)
+      else
+        first = scene%mesh%origin(:, one%nodes)
+      end if
+      extent = maxval(first, 2) - minval(first, 2)
+      yes = extent(c) <= straight*extent(3 - c)
+      if (c == 1 .and. scene%plane_state == axisymmetric) yes = yes .and. any(abs(first(1, :)) > straight*extent(2))
       do f = 1, size(scene%fixations)
         associate (other => scene%fixations(f))
           if (other%field /= displacement_field .or. other%component == c .or. size(other%nodes) /= size(one%nodes)) cycle
