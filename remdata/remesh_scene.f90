@@ -28,6 +28,7 @@ module remesh_scene
   use old_checkpoint, only: read_old_checkpoint
   use pair_fit, only: fit_pairs, update_closest_points
   use part_contour, only: build_contours
+  use placed_walls, only: lift_sides, place_walls, placed_wall_t, put_on_walls
   use point_carry, only: carry_points
   use remesh_cuts, only: cut_bodies, cut_now, note_cuts
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
@@ -38,7 +39,6 @@ module remesh_scene
   use sizes_of_run, only: learn_sizes
   use sizes_of_scene, only: requested_sizes
   use solution, only: present_coordinates, solution_t, start_solution
-  use walls, only: lift_sides, place_walls, placed_wall_t, put_on_walls
   use zone_mesh, only: new_mesh_t
   use zone_plan, only: plan_zones
   use zones, only: plan_t

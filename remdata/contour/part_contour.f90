@@ -15,6 +15,7 @@ module part_contour
   use folded_sides, only: open_folds
   use kinds, only: wp
   use loop_intervals, only: side_point_t
+  use placed_walls, only: place_walls, placed_wall_t, put_on_walls
   use refused_laps, only: refuse_laps
   use scene, only: is_solid, scene_t, solid_elements
   use side_tags, only: find_tags, held_nodes
@@ -22,7 +23,6 @@ module part_contour
   use text, only: to_text
   use vectors, only: length_of
   use volume_correction, only: keep_volume
-  use walls, only: place_walls, placed_wall_t, put_on_walls
   implicit none
   private
   public :: contour_options_t, build_contours

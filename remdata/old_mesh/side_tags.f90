@@ -7,8 +7,8 @@ module side_tags
   use boundary_sides, only: loop_t
   use dies, only: is_deformable
   use kinds, only: wp
+  use placed_walls, only: place_walls, placed_wall_t
   use scene, only: axisymmetric, scene_t
-  use walls, only: place_walls, placed_wall_t
   implicit none
   private
   public :: side_tags_t, find_tags, same_tags, held_nodes, kept_corners

@@ -21,12 +21,12 @@ module wall_contact
   use fields, only: displacement_field
   use kinds, only: wp
   use law_api, only: law_t
+  use placed_walls, only: place_walls, placed_wall_t
   use quadrature, only: line_rule, rule_equidistant, rule_t
   use scene, only: axisymmetric, is_solid, scene_t
   use shape_functions, only: line3, quad8_side
   use sparsity, only: pattern_t
   use vectors, only: length_of
-  use walls, only: place_walls, placed_wall_t
   implicit none
   private
   public :: wall_contact_t, find_wall_sides, press_on_walls
@@ -242,7 +242,8 @@ contains
       d = before + dot_product(phi, motion)
       if (before <= at_wall*contact%length(s) .and. min(d, before) < 0) &
         report%jump = max(report%jump, abs(d - before)/contact%length(s))
-      if (tangent .and. (d < 0 .or. d < near)) then
+      ! a held node is on the wall anyway
+      if (tangent .and. (d < 0 .or. (d < near .and. any(is_free .and. abs(phi) > on_wall)))) then
         do j = 1, 3
           matrix(places%matrix(:, j)) = matrix(places%matrix(:, j)) + contact%stiffness(s)*phi*phi(j)
         end do
