@@ -129,8 +129,8 @@ contains
     end do
   end subroutine lift_sides
 
-  !> What the walls whose supports hold none but some nodes carry beside these; 0 where there is no such wall. Free nodes have
-  !> reactions of walls alone.
+  !> What the walls whose supports hold none but some nodes carry beside these; 0 where there is no such wall. Nodes that no support
+  !> holds have reactions of walls alone: of the one that is nearest.
   pure function reaction_beside(scene, x, component, nodes, reaction) result(total)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)        !! (2, nnode) now [length]
@@ -139,23 +139,38 @@ contains
     real(wp), intent(in) :: reaction(:)    !! (nnode) [force], per radian when axisymmetric
     real(wp) :: total                      !! [force], per radian when axisymmetric
     type(placed_wall_t), allocatable :: walls(:)
-    logical :: counted(size(x, 2))
-    integer :: k, f
+    logical :: counted(size(x, 2)), held(size(x, 2))
+    real(wp) :: nearest(size(x, 2))
+    integer :: wall_of(size(x, 2)), k, f
 
     total = 0
     if (.not. allocated(scene%walls)) return
     if (all(scene%walls%component /= component)) return
+    call place_walls(scene, x, walls)
     counted = .false.
     counted(nodes) = .true.
-    call place_walls(scene, x, walls)
+    held = .false.
+    do f = 1, size(scene%fixations)
+      associate (one => scene%fixations(f))
+        if (one%field == displacement_field .and. one%component == component) held(one%nodes) = .true.
+      end associate
+    end do
+    wall_of = 0
+    nearest = huge(1.0_wp)
+    do k = 1, size(walls)
+      if (walls(k)%component /= component) cycle
+      associate (d => abs(x(component, :) - walls(k)%place))
+        where (walls(k)%acts_on .and. d < nearest)
+          nearest = d
+          wall_of = k
+        end where
+      end associate
+    end do
     do k = 1, size(walls)
       if (walls(k)%number == 0 .or. walls(k)%component /= component) cycle
       f = support_of(scene, scene%walls(walls(k)%number))
       if (f == 0) cycle
-      if (.not. all(counted(scene%fixations(f)%nodes))) cycle
-      associate (d => abs(x(component, :) - walls(k)%place))
-        total = total + sum(reaction, walls(k)%acts_on .and. .not. counted .and. d <= wall_depth*maxval(d, walls(k)%acts_on))
-      end associate
+      if (all(counted(scene%fixations(f)%nodes))) total = total + sum(reaction, wall_of == k .and. .not. (held .or. counted))
     end do
   end function reaction_beside
 
