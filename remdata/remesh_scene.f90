@@ -28,7 +28,7 @@ module remesh_scene
   use old_checkpoint, only: read_old_checkpoint
   use pair_fit, only: fit_pairs, update_closest_points
   use part_contour, only: build_contours
-  use placed_walls, only: lift_sides, place_walls, placed_wall_t, put_on_walls
+  use placed_walls, only: lay_sides, lift_sides, place_walls, placed_wall_t, put_on_walls
   use point_carry, only: carry_points
   use remesh_cuts, only: cut_bodies, cut_now, note_cuts
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
@@ -171,6 +171,7 @@ contains
     type(new_mesh_t), intent(inout) :: mesh
     type(placed_wall_t), allocatable :: walls(:)
     logical, allocatable :: acts_on(:, :)
+    integer, allocatable :: sides(:, :)
     integer :: w, e
 
     call place_walls(old, present_coordinates(old, before), walls)
@@ -181,9 +182,9 @@ contains
       end do
     end do
     call put_on_walls(walls, mesh%coordinates, acts_on)
-    do w = 1, size(mesh%sides)
-      call lift_sides(walls, reshape(mesh%sides(w)%nodes, [3, 1]), acts_on, mesh%coordinates)
-    end do
+    sides = reshape([(mesh%sides(e)%nodes, e=1, size(mesh%sides))], [3, size(mesh%sides)])
+    call lay_sides(walls, sides, acts_on, mesh%coordinates)
+    call lift_sides(walls, sides, acts_on, mesh%coordinates)
   end subroutine keep_walls
 
   !> Walls on the new mesh: a node on each.

@@ -15,7 +15,7 @@ module part_contour
   use folded_sides, only: open_folds
   use kinds, only: wp
   use loop_intervals, only: side_point_t
-  use placed_walls, only: place_walls, placed_wall_t, put_on_walls
+  use placed_walls, only: lay_sides, place_walls, placed_wall_t, put_on_walls
   use refused_laps, only: refuse_laps
   use scene, only: is_solid, scene_t, solid_elements
   use side_tags, only: find_tags, held_nodes
@@ -66,6 +66,9 @@ contains
                            status == shared_by_three)))
       return
     end if
+    do k = 1, size(loops)
+      call lay_sides(walls, loops(k)%sides, nodes_of_walls(walls, size(x, 2)), x)
+    end do
     held = held_nodes(scene) .or. repeated_nodes(loops, size(x, 2))
     held = held .or. nodes_on_walls(walls, loops, x)
     do k = 1, size(loops)

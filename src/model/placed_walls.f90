@@ -4,13 +4,16 @@ module placed_walls
   use fields, only: displacement_field
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t, wall_t
+  use vectors, only: length_of
   implicit none
   private
-  public :: placed_wall_t, lift_sides, place_walls, put_on_walls, reaction_beside, support_of
+  public :: placed_wall_t, lay_sides, lift_sides, place_walls, put_on_walls, reaction_beside, support_of
 
   !> Depth in a wall over the size of the body: what sides, of which none is longer, dip between the wall's points; deeper ones than
   !> the wall lets in are left for checks to refuse. And that of a line that has been bent or passed before it became a wall.
   real(wp), parameter :: wall_depth = 1.0e-3_wp
+  !> The same over the side that dips (wall_contact); and the longest way of a middle node over its side: more would be a corner.
+  real(wp), parameter :: side_depth = 1.0e-4_wp, largest_lift = 0.125_wp
 
   !> A wall at an instant: points at side*(x(component) - place) < 0 are behind it.
   type :: placed_wall_t
@@ -105,6 +108,29 @@ contains
     end do
   end subroutine put_on_walls
 
+  !> Sides of a contour that lies on walls: nodes nearer to a wall than what it lets in between its points are on it, so that no side
+  !> is left hanging a hair above it.
+  pure subroutine lay_sides(placed, sides, acts_on, x)
+    type(placed_wall_t), intent(in) :: placed(:)   !! (nwall)
+    integer, intent(in) :: sides(:, :)             !! (3, nside) nodes, the middle one second
+    logical, intent(in) :: acts_on(:, :)           !! (nnode, nwall) nodes of what must not cross each
+    real(wp), intent(inout) :: x(:, :)             !! (2, nnode) [length]
+    real(wp) :: near
+    integer :: k, i, j
+
+    do k = 1, size(placed)
+      associate (wall => placed(k))
+        do i = 1, size(sides, 2)
+          if (.not. acts_on(sides(2, i), k)) cycle
+          near = side_depth*length_of(x(:, sides(3, i)) - x(:, sides(1, i)))
+          do j = 1, 3
+            if (abs(x(wall%component, sides(j, i)) - wall%place) <= near) x(wall%component, sides(j, i)) = wall%place
+          end do
+        end do
+      end associate
+    end do
+  end subroutine lay_sides
+
   !> Middle nodes of sides that dip behind walls between their nodes are moved until the sides touch them. With distances d1, d2, d3
   !> of its nodes a parabola is nowhere behind where d2 >= (sqrt(d3) - sqrt(d1))**2/4: there it is a square, (a + b xi)**2.
   pure subroutine lift_sides(placed, sides, acts_on, x)
@@ -112,18 +138,18 @@ contains
     integer, intent(in) :: sides(:, :)             !! (3, nside) nodes, the middle one second
     logical, intent(in) :: acts_on(:, :)           !! (nnode, nwall) nodes of what must not cross each
     real(wp), intent(inout) :: x(:, :)             !! (2, nnode) [length]
-    real(wp) :: d(3), least, deepest
+    real(wp) :: d(3), least
     integer :: k, i
 
     do k = 1, size(placed)
       associate (wall => placed(k))
-        deepest = wall_depth*maxval(wall%side*(x(wall%component, :) - wall%place), acts_on(:, k))
         do i = 1, size(sides, 2)
           if (.not. acts_on(sides(2, i), k)) cycle
           d = wall%side*(x(wall%component, sides(:, i)) - wall%place)
           if (any(d < 0)) cycle
           least = 0.25_wp*(sqrt(d(3)) - sqrt(d(1)))**2
-          if (d(2) < least .and. least - d(2) <= deepest) x(wall%component, sides(2, i)) = wall%place + wall%side*least
+          if (d(2) < least .and. least - d(2) <= largest_lift*length_of(x(:, sides(3, i)) - x(:, sides(1, i)))) &
+            x(wall%component, sides(2, i)) = wall%place + wall%side*least
         end do
       end associate
     end do
