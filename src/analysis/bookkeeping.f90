@@ -54,9 +54,8 @@ contains
     associate (reaction => fields(displacement_field)%reaction, number => equations%dofs%fields(displacement_field)%number)
       do k = 1, size(reaction, 2)
         do c = 1, 2
-          ! where a support holds the node the force of a wall is part of what it carries
-          if (number(c, k) == 0) cycle
-          if (equations%dofs%is_free(number(c, k))) reaction(c, k) = equations%wall%force(c, k)
+          ! where a support holds the node too, what the wall does to it is part of what it carries
+          if (number(c, k) > 0) reaction(c, k) = reaction(c, k) + equations%wall%force(c, k)
         end do
       end do
     end associate
