@@ -6,7 +6,7 @@ module support_planes
   use text, only: to_text
   implicit none
   private
-  public :: holds_plane, plane_beside
+  public :: holds_plane, plane_beside, wall_beside
 
   !> Distance of nodes from a straight line, and of a point that is beside one, over the length of the line.
   real(wp), parameter :: straight = 1.0e-9_wp, beside = 1.0e-3_wp
@@ -33,6 +33,22 @@ contains
       end associate
     end do
   end function plane_beside
+
+  !> Is the plane through a point a wall?
+  pure function wall_beside(scene, point) result(yes)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: point(2)   !! [length]
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    if (.not. (allocated(scene%walls) .and. allocated(scene%mesh%origin))) return
+    do k = 1, size(scene%walls)
+      associate (first => scene%mesh%origin(scene%walls(k)%component, :), wall => scene%walls(k))
+        yes = yes .or. abs(point(wall%component) - first(wall%node)) <= beside*(maxval(first) - minval(first))
+      end associate
+    end do
+  end function wall_beside
 
   !> Does a support hold nodes on a straight line against motion across it, and across it alone? The axis is a wall already.
   pure function holds_plane(scene, number, x) result(yes)

@@ -107,7 +107,8 @@ CASES = [("pore", PORE, {"unit": 1, "travel": 3.5}, ("right 4", "top 4"), (0, 1)
          ("waist", WAIST, {"state": "PLSTN", "width": 9, "travel": 4, "mu": 0.2}, ("b 2",), (1,)),
          ("waist-round", WAIST, {"state": "AXISYM", "width": 9, "travel": 4, "mu": 0.2}, ("b 2",), (1,)),
          ("groove", GROOVE, {"travel": 1.5, "mu": 0.3}, ("right 1",), (1,))]
-BEFORE = {}
+# Depth over side of the code before, which ended with 0 all the same.
+BEFORE = {"pore": 5.86, "pore-coarse": 3.87, "pore-SI": 5.86, "waist": 0.85, "waist-round": 0.30, "groove": 1.52}
 
 
 def deck(text, numbers, **more):
@@ -157,7 +158,7 @@ def folds(checks):
         with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
         carried = [wall["force_beside_support"] for wall in summary["walls"]]
-        checks.that(len(carried) == len(run_walls(text)), f"{name}: walls in the summary", carried)
+        checks.that(len(carried) == (1 if numbers.get("state") == "AXISYM" else 2), f"{name}: walls in the summary", carried)
         force = [one.history["force_y_upper"][-1] for one in (run, other)]
         checks.that(carried[0] > 0.01*force[0], f"{name}: the wall carries a part of the force", carried)
         checks.small(abs(force[0]/force[1] - 1), SAME, f"{name}: force against dies along the planes")
@@ -167,14 +168,134 @@ def folds(checks):
               f"| {100*(run.history['support'][-1]/force[0] - 1):.1e} | {len(run.history['step'])} | {len(other.history['step'])} |")
 
 
-def run_walls(text):
-    """Supports of a deck that are walls."""
-    return [line for line in text.splitlines() if line.startswith("FIXED")][:2 if "AXISYM" not in text else 1]
+def whole_plate(checks):
+    """The quarter against the plate of four, whose hole touches itself: force, and area of the hole."""
+    numbers = {"unit": 1, "travel": 3.5}
+    runs = [Run(checks, "quarter", deck(PORE, numbers)), Run(checks, "whole", whole(numbers))]
+    if not all(run.ok for run in runs):
+        return
+    force = [run.history["force_y_upper"][-1]*factor for run, factor in zip(runs, (2, 1))]
+    checks.small(abs(force[0]/force[1] - 1), SAME, "whole plate: force")
+    areas = []
+    for run, quarters in zip(runs, (1, 4)):
+        first, nodes = run.mesh()
+        with run.open() as file:
+            steps = sorted(file["steps"])
+            areas.append([hole(first + file[f"steps/{step}/node/displacement"][()][:, :2], first, nodes)/quarters for step in steps])
+    # both save every so many steps of their own: what the hole is left with at the end, over what it began with
+    checks.that(areas[0][0] > 3 and areas[0][-1] < 0.02*areas[0][0], "whole plate: the hole of the quarter closes", areas[0])
+    checks.small(abs(areas[0][-1] - areas[1][-1])/areas[0][0], SAME, "whole plate: area of the hole")
+
+
+def whole(numbers):
+    """The deck of the plate of four: eight blocks around the hole."""
+    corners = [("$a 0.", "$s 0."), ("$c $c", "$s $s"), ("0. $a", "0. $s"), ("-$c $c", "-$s $s"), ("-$a 0.", "-$s 0."),
+               ("-$c -$c", "-$s -$s"), ("0. -$a", "0. -$s"), ("$c -$c", "$s -$s")]
+    text = PORE[:PORE.index("BLOCK")]
+    for k in range(8):
+        (inner, outer), (inner_after, outer_after) = corners[k], corners[(k + 1) % 8]
+        text += f"BLOCK  b{k} PL8LS 4 metal\n   {inner}  {outer}  {outer_after}  {inner_after}\n   {{n}} 5.   {{m}} 1.\n   SIDE 4 ARC 0. 0.\n"
+    text += "".join(f"JOIN   b{k} 3 b{(k + 1) % 8} 1\n" for k in range(8)) + METAL
+    text += "DIE    upper PILOT 0. $s\n   SEGM   3*$s $s   -3*$s $s\nDIE    lower PILOT 0. -$s\n   SEGM   -3*$s -$s   3*$s -$s\n"
+    text += "".join(f"CNT2D  b{k} 2 {'upper' if k < 4 else 'lower'} -3 film\n" for k in range(8))
+    text += "DIE    hole SIDES " + " ".join(f"b{k} 4" for k in range(8)) + "\nLAW    slip COUL2D\n   PENETR 1.E-4   PHI 0.\n"
+    text += "".join(f"CNT2D  b{k} 4 hole slip\n" for k in range(8))
+    text += "FIXED  POINT 0. $s X\nFIXED  POINT 0. -$s X\nMOVE   lower Y press -1.\n" + PRESS
+    return deck(text, numbers)
+
+
+def hole(now, first, nodes):
+    """Area inside the sides that were on the hole at the start, to the origin."""
+    sharing = np.bincount(nodes[:, 4:].ravel(), minlength=len(first))
+    sides = np.concatenate([nodes[:, side] for side in SIDES])
+    sides = sides[(sharing[sides[:, 1]] == 1) & (np.linalg.norm(first[sides[:, 1]], axis=1) < 2.1)
+                  & (np.linalg.norm(first[sides[:, 0]], axis=1) < 2.1) & (np.linalg.norm(first[sides[:, 2]], axis=1) < 2.1)]
+    points, weights = np.polynomial.legendre.leggauss(3)
+    area = 0.0
+    for xi, weight in zip(points, weights):
+        place = np.array([xi*(xi - 1)/2, 1 - xi**2, xi*(xi + 1)/2]) @ now[sides]
+        along = np.array([xi - 0.5, -2*xi, xi + 0.5]) @ now[sides]
+        # the part is on the left: the hole is walked against the clock's other way
+        area -= 0.5*weight*(place[:, 0]*along[:, 1] - place[:, 1]*along[:, 0]).sum()
+    return area
+
+
+def resumed(checks):
+    """A run that goes on from a checkpoint in which the wall bears ends with the same bits."""
+    numbers = {"travel": 1.2, "mu": 0.3, "more": "CKPT 4\nNORMS PATH 0 RATE 0\n"}
+    run = Run(checks, "begun", deck(GROOVE, numbers))
+    if not run.ok:
+        return
+    again = os.path.join(checks.folder, "again")
+    result = subprocess.run([LAGAMINE, run.out + ".lag", "--resume", os.path.join(run.out, "begun.ckp.1.h5"), "--out", again,
+                             "--threads", "1", "--quiet"], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                            timeout=120)
+    if not checks.that(result.returncode == 0, f"resumed: ends with {result.returncode}", result.stderr[-300:]):
+        return
+    last = []
+    for folder in (run.out, again):
+        with open(os.path.join(folder, "history.csv"), encoding="utf-8") as file:
+            last.append(file.read().splitlines()[-1])
+    checks.that(last[0] == last[1], "resumed: the last row of the history, bit for bit", last)
+
+
+PAD = """TITLE  plate on a pad
+STATE  PLSTN
+KINEM  LOG
+BLOCK  mid PL8LS 4 metal
+   0. 0.   4. 0.   4. 1.   0. 1.
+   4 1.   2 1.
+BLOCK  arm PL8LS 4 metal
+   4. 0.   12. 0.   12. 1.   4. 1.
+   8 1.   2 1.
+JOIN   mid 2 arm 4
+""" + METAL.split("LAW    film")[0] + """FIXED  mid 1 Y
+FIXED  mid 4 X
+MOVE   POINT 12. 1. Y press
+PROBE  tip NODE Y 12. 0.
+LIC    press
+   0. 0.   1. -2.
+STRAT  0.01 1.E-5 0.05   5 3
+SAVE   10
+END
+"""
+
+
+def no_walls(checks):
+    """A plate on a pad bends below the level of the pad: beside what is held its free sides lie in the line, which is no wall."""
+    run = Run(checks, "pad", deck(PAD, {}))
+    if not run.ok:
+        return
+    checks.small(abs(run.history["tip"][-1] + 2), 0.1, "pad: the arm goes below the line")
+    said = subprocess.run([LAGAMINE, "--check", run.out + ".lag"], check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          timeout=60).stdout
+    checks.that("no wall    FIXED mid.1 Y           y = 0: free sides of the body lie in it" in said, "pad: told", said)
+    checks.that("wall       FIXED mid.4 X           mid, arm does not cross x = 0" in said, "pad: the other plane is a wall", said)
+
+
+def operations(checks):
+    """The flank folds in one operation and goes on in the next: the plane stays a wall, and the force is that of one stroke."""
+    whole_way = deck(WAIST, {"state": "PLSTN", "width": 9, "travel": 3})
+    # the second operation is the same press, from where the first has left it
+    shared, press = whole_way.split("DIE    upper")
+    first = "DIE    upper" + press.replace("END\n", "")
+    second = first.replace("1. -3", "1. -1.5").replace("PILOT 0. 8.", "PILOT 0. 6.5").replace("40. 8.   -2. 8.", "40. 6.5   -2. 6.5")
+    text = shared + "OPERA  one\n" + first.replace("1. -3", "1. -1.5") + "OPERA  two\n" + second + "END\n"
+    runs = [Run(checks, "one-stroke", whole_way), Run(checks, "two-strokes", text)]
+    if not all(run.ok for run in runs):
+        return
+    force = [run.history["force_y_upper"][-1] for run in runs]
+    checks.small(abs(force[1]/force[0] - 1), 0.02, "operations: force of two strokes against one")
+    checks.small(abs(runs[1].history["support"][-1]/force[1] - 1), 1e-4, "operations: support and wall carry what the die does")
 
 
 def main():
     checks = Checks()
     folds(checks)
+    whole_plate(checks)
+    resumed(checks)
+    no_walls(checks)
+    operations(checks)
     checks.end()
 
 
