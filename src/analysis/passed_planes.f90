@@ -1,8 +1,8 @@
 !> Bodies that have passed through the plane in which a side of theirs is held.
 !>
 !> A support in one direction alone along a straight side, with all of the body on one side of it, is mostly a plane of symmetry.
-!> Where it is no wall (walls) nothing keeps free sides from passing it: the mirror image that they would meet is in no deck, and the
-!> run ends with code 0.
+!> Where it is no wall (walls) nothing keeps free sides from passing it: the mirror image that they would meet is in no deck, and
+!> the run ends with code 0.
 module passed_planes
   use kinds, only: wp
   use scene, only: is_solid, scene_t

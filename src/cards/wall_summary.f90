@@ -1,7 +1,6 @@
 !> What the summary of a scene says of walls: planes of symmetry that nothing of a body crosses, and why others are none.
 module wall_summary
   use bodies, only: bodies_of_nodes
-  use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t
   use text, only: add_text, padded, string_t, to_text
   use walls, only: has_free_sides, judge_supports, lies_on_both_sides, may_be_passed

@@ -108,8 +108,8 @@ contains
     end do
   end subroutine put_on_walls
 
-  !> Sides of a contour that lies on walls: nodes nearer to a wall than what it lets in between its points are on it, so that no side
-  !> is left hanging a hair above it.
+  !> Sides of a contour that lies on walls: nodes nearer to a wall than what it lets in between its points are on it, so that no
+  !> side is left hanging a hair above it.
   pure subroutine lay_sides(placed, sides, acts_on, x)
     type(placed_wall_t), intent(in) :: placed(:)   !! (nwall)
     integer, intent(in) :: sides(:, :)             !! (3, nside) nodes, the middle one second

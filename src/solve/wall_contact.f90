@@ -1,13 +1,13 @@
-!> Walls that nothing crosses: the axis of an axisymmetric scene, where the sides of bodies stay at r >= 0, and planes of symmetry in
-!> which supports hold a body (walls).
+!> Walls that nothing crosses: the axis of an axisymmetric scene, where the sides of bodies stay at r >= 0, and planes of symmetry
+!> in which supports hold a body (walls).
 !>
 !> Points of a side (its nodes and many between) have no area at r = 0, so that a pressure on an area holds nothing there.
 !> What holds them is a nodal force without a radius in it, that of a stiff spring toward the wall where the distance d < 0:
 !> f = k d, by the shape functions of the side on its nodes, without friction. k is `hardness` times Young's modulus times the depth
-!> of the side across the plane: the thickness [force/length]; round the axis its chord at the axis itself, elsewhere its mean radius,
-!> half its chord at least [force/length per radian]. Stresses of a hundredth of the modulus leave a depth of 1e-5 of the side. All
-!> that meets here lies on one straight line, so that many points on a side of three nodes do not constrain it too much; between two
-!> of them a parabola d'' dips by d'' h**2/8, h = 2/(npoint - 1): 5e-4 d''. Source of unilateral penalties: P. Wriggers,
+!> of the side across the plane: the thickness [force/length]; round the axis its chord at the axis itself, elsewhere the radius of
+!> its middle, half its chord at least [force/length per radian]. Stresses of a hundredth of the modulus leave a depth of 1e-5 of the
+!> side. All that meets here lies on one straight line, so that many points on a side of three nodes do not constrain it too much;
+!> between two of them a parabola d'' dips by d'' h**2/8, h = 2/(npoint - 1): 5e-4 d''. Source of unilateral penalties: P. Wriggers,
 !> Computational Contact Mechanics, 2nd ed., Springer 2006, sec. 6.3.
 !>
 !> The force is added to that of the element the side belongs to, before it is gathered: pattern and order of sums stay what they
@@ -53,8 +53,8 @@ module wall_contact
     real(wp), allocatable :: force(:, :)
   end type wall_contact_t
 
-  !> Places of the component across the wall of a side's three nodes in the lists of all forces, and of all entries of matrices (row,
-  !> column).
+  !> Places of the component across the wall of a side's three nodes in the lists of all forces, and of all entries of matrices
+  !> (row, column).
   type :: places_t
     integer :: force(3) = 0, matrix(3, 3) = 0
   end type places_t
