@@ -3,7 +3,7 @@ module wall_summary
   use bodies, only: bodies_of_nodes
   use scene, only: axisymmetric, is_solid, scene_t
   use text, only: add_text, padded, string_t, to_text
-  use walls, only: has_free_sides, judge_supports, lies_on_both_sides, may_be_passed
+  use walls, only: has_die, has_free_sides, judge_supports, lies_on_both_sides, may_be_passed
   implicit none
   private
   public :: add_walls
@@ -38,6 +38,8 @@ contains
           call add_none('the body lies on both sides of it')
         case (has_free_sides)
           call add_none('free sides of the body lie in it')
+        case (has_die)
+          call add_none('the body faces a die along it')
         case (may_be_passed)
           call add_none('NOWALL')
         end select

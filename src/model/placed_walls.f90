@@ -28,17 +28,19 @@ module placed_walls
 contains
 
   !> The walls of a scene where they are now, each once: the axis, and the scene's list but for lines that an operation before has
-  !> bent, or behind which a body lies already.
-  pure subroutine place_walls(scene, x, placed)
+  !> bent, or behind which a body lies already; these are named.
+  pure subroutine place_walls(scene, x, placed, dropped)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: x(:, :)   !! (2, nnode) now [length]
     type(placed_wall_t), allocatable, intent(out) :: placed(:)   !! (nwall)
+    integer, allocatable, intent(out), optional :: dropped(:)    !! (n) places in the scene's list
     type(placed_wall_t) :: one
     integer, allocatable :: body(:)
     real(wp) :: depth
     integer :: g, k
 
     allocate (placed(0))
+    if (present(dropped)) allocate (dropped(0))
     allocate (one%acts_on(size(x, 2)), one%of_group(size(scene%groups)), source=.true.)
     if (scene%plane_state == axisymmetric) then
       one%component = 1
@@ -55,7 +57,10 @@ contains
         end do
         associate (d => one%side*(x(one%component, :) - one%place))
           depth = max(-minval(d, one%acts_on), bend_of_line(scene, wall, d))
-          if (depth > wall_depth*maxval(d, one%acts_on)) cycle
+          if (depth > wall_depth*maxval(d, one%acts_on)) then
+            if (present(dropped)) dropped = [dropped, k]
+            cycle
+          end if
         end associate
         if (is_listed(placed, one)) cycle
       end associate

@@ -5,11 +5,13 @@
 !> a wall for that body, provided that at the start
 !> - all of the body lies on one side of it: else the line is inside the body, or the body goes on beyond a held edge;
 !> - no free side of the body lies in it: a body cut along a plane of symmetry is held all along the cut. Where it is held along a
-!>   part, as a plate on a pad, what is beside that part may go behind the line.
+!>   part, as a plate on a pad, what is beside that part may go behind the line;
+!> - no sides of the body face a rigid die that lies along it: that is there for them, with its friction and its forces.
 !> This is judged on the mesh that an operation begins with. Later meshes keep the verdict: sides that have come to lie on the wall
 !> are free ones in the line. In an axisymmetric scene a line x = r is no plane; the axis is a wall for all bodies, without a card.
 module walls
   use bodies, only: bodies_of_nodes, elements_at_middles
+  use dies, only: is_deformable
   use fields, only: displacement_field
   use kinds, only: wp
   use scene, only: axisymmetric, is_solid, scene_t, wall_t
@@ -19,11 +21,11 @@ module walls
   implicit none
   private
   public :: find_walls, judge_supports
-  public :: no_plane, is_wall, lies_on_both_sides, has_free_sides, may_be_passed
+  public :: no_plane, is_wall, lies_on_both_sides, has_free_sides, has_die, may_be_passed
 
   !> What a support is (judge_supports): it holds no plane of symmetry, it does, or it does not since the body lies on both sides of
-  !> the line, has free sides in it, or the card says so.
-  integer, parameter :: no_plane = 0, is_wall = 1, lies_on_both_sides = 2, has_free_sides = 3, may_be_passed = 4
+  !> the line, has free sides in it, faces a die that lies along it, or the card says so.
+  integer, parameter :: no_plane = 0, is_wall = 1, lies_on_both_sides = 2, has_free_sides = 3, has_die = 4, may_be_passed = 5
   !> Distance of points that are on a line over the size of the body: round-off of points as cards give them.
   real(wp), parameter :: on_line = 1.0e-9_wp
   !> Points of a side that are looked at.
@@ -150,7 +152,35 @@ contains
     verdict = is_wall
     if (free) verdict = has_free_sides
     if (low < -near .and. high > near) verdict = lies_on_both_sides
+    if (verdict == is_wall .and. faces_die(scene, f, body, near)) verdict = has_die
     if (scene%fixations(f)%may_pass) verdict = may_be_passed
   end function verdict_on
+
+  !> Sides of the body that a support holds face a rigid die, a piece of which lies along the line as the scene begins.
+  pure function faces_die(scene, f, body, near) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: f         !! the support
+    integer, intent(in) :: body(:)   !! (nnode) as `bodies_of_nodes` says
+    real(wp), intent(in) :: near     !! distance of points that are on the line [length]
+    logical :: yes
+    real(wp) :: place
+    integer :: g, k, c
+
+    yes = .false.
+    c = scene%fixations(f)%component
+    place = scene%mesh%coordinates(c, scene%fixations(f)%nodes(1))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. size(group%connectivity) == 0) cycle
+        if (body(group%connectivity(1, 1)) /= body(scene%fixations(f)%nodes(1))) cycle
+        if (is_deformable(scene%dies(group%die))) cycle
+        associate (die => scene%dies(group%die))
+          do k = 1, size(die%pieces, 3)
+            yes = yes .or. all(abs(die%pieces(c, :, k) + die%pilot(c) - place) <= near)
+          end do
+        end associate
+      end associate
+    end do
+  end function faces_die
 
 end module walls

@@ -5,8 +5,8 @@
 !> What holds them is a nodal force without a radius in it, that of a stiff spring toward the wall where the distance d < 0:
 !> f = k d, by the shape functions of the side on its nodes, without friction. k is `hardness` times Young's modulus times the depth
 !> of the side across the plane: the thickness [force/length]; round the axis its chord at the axis itself, elsewhere the radius of
-!> its middle, half its chord at least [force/length per radian]. Stresses of a hundredth of the modulus leave a depth of 1e-5 of the
-!> side. All that meets here lies on one straight line, so that many points on a side of three nodes do not constrain it too much;
+!> its middle, half its chord at least [force/length per radian]. Stresses of a hundredth of the modulus leave 1e-5 of the side as
+!> depth. All that meets here lies on one straight line, so that many points on a side of three nodes do not constrain it too much;
 !> between two of them a parabola d'' dips by d'' h**2/8, h = 2/(npoint - 1): 5e-4 d''. Source of unilateral penalties: P. Wriggers,
 !> Computational Contact Mechanics, 2nd ed., Springer 2006, sec. 6.3.
 !>

@@ -124,7 +124,7 @@ def with_dies(numbers, sides, components):
         cards += LEFT.format(length=length)
     names = ["left", "floor"]
     cards += "".join(f"CNT2D  {side} {names[c]} -17 slip\n" for side in sides for c in components)
-    return {"option": " NOWALL", "more": cards}
+    return {"more": cards}
 
 
 def deepest(run, components):
