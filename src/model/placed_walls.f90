@@ -12,8 +12,8 @@ module placed_walls
   !> Depth in a wall over the size of the body: what sides, of which none is longer, dip between the wall's points; deeper ones than
   !> the wall lets in are left for checks to refuse. And that of a line that has been bent or passed before it became a wall.
   real(wp), parameter :: wall_depth = 1.0e-3_wp
-  !> The same over the side that dips (wall_contact); and the longest way of a middle node over its side: more would be a corner.
-  real(wp), parameter :: side_depth = 1.0e-4_wp, largest_lift = 0.125_wp
+  !> The same over the side that dips (wall_contact). Ways of a middle node over its side: below is round-off, above a corner.
+  real(wp), parameter :: side_depth = 1.0e-4_wp, least_lift = 1.0e-9_wp, largest_lift = 0.125_wp
 
   !> A wall at an instant: points at side*(x(component) - place) < 0 are behind it.
   type :: placed_wall_t
@@ -113,8 +113,8 @@ contains
     end do
   end subroutine put_on_walls
 
-  !> Sides of a contour that lies on walls: nodes nearer to a wall than what it lets in between its points are on it, so that no
-  !> side is left hanging a hair above it.
+  !> Sides of a contour that lies on planes of symmetry: nodes nearer to one than what it lets in between its points are on it, so
+  !> that no side is left hanging a hair above it. Nodes near the axis stay, as they have no area there that a wedge could open.
   pure subroutine lay_sides(placed, sides, acts_on, x)
     type(placed_wall_t), intent(in) :: placed(:)   !! (nwall)
     integer, intent(in) :: sides(:, :)             !! (3, nside) nodes, the middle one second
@@ -125,6 +125,7 @@ contains
 
     do k = 1, size(placed)
       associate (wall => placed(k))
+        if (wall%number == 0) cycle
         do i = 1, size(sides, 2)
           if (.not. acts_on(sides(2, i), k)) cycle
           near = side_depth*length_of(x(:, sides(3, i)) - x(:, sides(1, i)))
@@ -143,7 +144,7 @@ contains
     integer, intent(in) :: sides(:, :)             !! (3, nside) nodes, the middle one second
     logical, intent(in) :: acts_on(:, :)           !! (nnode, nwall) nodes of what must not cross each
     real(wp), intent(inout) :: x(:, :)             !! (2, nnode) [length]
-    real(wp) :: d(3), least
+    real(wp) :: d(3), least, way
     integer :: k, i
 
     do k = 1, size(placed)
@@ -153,8 +154,8 @@ contains
           d = wall%side*(x(wall%component, sides(:, i)) - wall%place)
           if (any(d < 0)) cycle
           least = 0.25_wp*(sqrt(d(3)) - sqrt(d(1)))**2
-          if (d(2) < least .and. least - d(2) <= largest_lift*length_of(x(:, sides(3, i)) - x(:, sides(1, i)))) &
-            x(wall%component, sides(2, i)) = wall%place + wall%side*least
+          way = (least - d(2))/length_of(x(:, sides(3, i)) - x(:, sides(1, i)))
+          if (way > least_lift .and. way <= largest_lift) x(wall%component, sides(2, i)) = wall%place + wall%side*least
         end do
       end associate
     end do
