@@ -6,7 +6,6 @@
 !> checkpoint is never modified.
 module remesh_scene
   use axis_carry, only: carry_axis_nodes
-  use axis_nodes, only: put_on_axis
   use body_seams, only: find_seams, seams_t
   use carry_solution, only: carry_progress, carry_solids
   use contact_carry, only: carry_contacts
@@ -22,18 +21,20 @@ module remesh_scene
   use free_nodes_out, only: move_free_nodes_out
   use kinds, only: wp
   use material_interfaces, only: interface_t, interfaces_of
+  use mesh, only: nearest_node
   use mesh_choice, only: make_free_mesh, make_mesh, materials_of, may_be_free, needs_free_mesh, take_better_mesh
   use new_mesh_check, only: check_shape
   use new_scene, only: set_up_new_scene
   use old_checkpoint, only: read_old_checkpoint
   use pair_fit, only: fit_pairs, update_closest_points
   use part_contour, only: build_contours
+  use placed_walls, only: lay_sides, lift_sides, place_walls, placed_wall_t, put_on_walls
   use point_carry, only: carry_points
   use remesh_cuts, only: cut_bodies, cut_now, note_cuts
   use remesh_facts, only: begin_task, end_task, remesh_facts_t
   use remesh_options, only: remesh_options_t
   use remesher_options, only: by_free, by_gmsh, remesher_options_t, smallest_anywhere
-  use scene, only: axisymmetric, lacks_mesh, scene_t, solid_elements
+  use scene, only: lacks_mesh, scene_t, solid_elements
   use size_field, only: old_mesh_t, size_field_t
   use sizes_of_run, only: learn_sizes
   use sizes_of_scene, only: requested_sizes
@@ -114,6 +115,7 @@ contains
     if (allocated(error)) return
     call lay_scene_on_mesh(old, before%fields(pilot_field)%value, contours, plan, mesh, new, facts, error)
     if (allocated(error)) return
+    call carry_walls(old, before, new)
     call start_solution(new, after)
     if (first) then
       new%mesh%origin = new%mesh%coordinates
@@ -158,8 +160,47 @@ contains
       call take_better_mesh(old, before, contours, seams, sizes, options%finer, plan, mesh, facts)
     end if
     if (allocated(error)) return
-    if (old%plane_state == axisymmetric) call put_on_axis(mesh%coordinates)
+    call keep_walls(old, before, plan, mesh)
   end subroutine mesh_bodies
+
+  !> Nodes of the new mesh behind walls go to the walls, and sides do not dip behind them.
+  pure subroutine keep_walls(old, before, plan, mesh)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    type(plan_t), intent(in) :: plan
+    type(new_mesh_t), intent(inout) :: mesh
+    type(placed_wall_t), allocatable :: walls(:)
+    logical, allocatable :: acts_on(:, :)
+    integer, allocatable :: sides(:, :)
+    integer :: w, e
+
+    call place_walls(old, present_coordinates(old, before), walls)
+    allocate (acts_on(size(mesh%coordinates, 2), size(walls)), source=.false.)
+    do w = 1, size(walls)
+      do e = 1, size(mesh%connectivity, 2)
+        if (walls(w)%of_group(plan%group(mesh%zone(e)))) acts_on(mesh%connectivity(:, e), w) = .true.
+      end do
+    end do
+    call put_on_walls(walls, mesh%coordinates, acts_on)
+    sides = reshape([(mesh%sides(e)%nodes, e=1, size(mesh%sides))], [3, size(mesh%sides)])
+    call lay_sides(walls, sides, acts_on, mesh%coordinates)
+    call lift_sides(walls, sides, acts_on, mesh%coordinates)
+  end subroutine keep_walls
+
+  !> Walls on the new mesh: a node on each.
+  pure subroutine carry_walls(old, before, new)
+    type(scene_t), intent(in) :: old
+    type(solution_t), intent(in) :: before
+    type(scene_t), intent(inout) :: new
+    real(wp) :: x(2, size(old%mesh%coordinates, 2)), distance
+    integer :: k
+
+    if (.not. allocated(old%walls)) return
+    x = present_coordinates(old, before)
+    do k = 1, size(old%walls)
+      call nearest_node(new%mesh%coordinates, x(:, old%walls(k)%node), new%walls(k)%node, distance)
+    end do
+  end subroutine carry_walls
 
   !> The scene on the new mesh: sides of bodies in contact are fitted to each other, folds closed, free nodes moved out of dies.
   subroutine lay_scene_on_mesh(old, pilots, contours, plan, mesh, new, facts, error)

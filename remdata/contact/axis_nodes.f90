@@ -3,7 +3,6 @@
 !> A point on the axis has no surface: with integration rules that have points at the ends of a side no contact force acts on its
 !> node there, and it may penetrate the die. The contour of a new mesh would pass through it, and integration points of that mesh
 !> would have the same depth. (The node has no part in the load of a uniform pressure, nor, to second order, in the volume.)
-!> And nodes that the wall of the axis holds, a little below r = 0 (axis_wall), put where the wall is.
 module axis_nodes
   use closest_point, only: closest_point_t
   use die_closest_points, only: find_closest_point
@@ -17,26 +16,14 @@ module axis_nodes
   use state_variables, only: find_variable
   implicit none
   private
-  public :: limit_depths, put_on_axis
+  public :: limit_depths
 
   !> A radius below this share of the largest one is zero.
   real(wp), parameter :: no_radius = 1.0e-9_wp
-  !> Depth in the wall of the axis over the largest radius: what sides, of which none is longer, dip between the wall's points.
-  real(wp), parameter :: wall_depth = 1.0e-3_wp
   !> Dies steeper than this on the axis are ignored: the depth along the axis has no meaning there.
   real(wp), parameter :: least_cosine = 0.5_wp
 
 contains
-
-  !> Nodes below r = 0 go to r = 0: their depth in a stiff spring. Deeper ones than the wall lets in are left for checks to refuse.
-  pure subroutine put_on_axis(x)
-    real(wp), intent(inout) :: x(:, :)   !! (2, nnode) [length]
-
-    if (size(x, 2) == 0) return
-    associate (radius => x(1, :))
-      where (radius < 0 .and. radius >= -wall_depth*maxval(radius)) radius = 0
-    end associate
-  end subroutine put_on_axis
 
   !> Nodes on the axis that lie deeper in a rigid die than the closed point next to them.
   pure subroutine limit_depths(scene, solution, x)

@@ -1,7 +1,7 @@
 !> The contour of a piece of a body that was cut: with the tags of its sides, and with its contact intervals.
 !>
 !> The cut surface belongs to the sets of the sides at both its ends, but not of those that are held, are a die of another body or
-!> lie on the axis: what a tool or a furnace does to the surface beside the cut it does to the cut surface too.
+!> lie on a wall: what a tool or a furnace does to the surface beside the cut it does to the cut surface too.
 module cut_contour
   use arcs, only: arc_t
   use contour_contacts, only: contact_t
@@ -82,6 +82,7 @@ contains
     call add_columns(more%on_fixation, tags%on_fixation)
     call add_columns(more%on_die, tags%on_die)
     tags%on_axis = [tags%on_axis, more%on_axis]
+    tags%on_wall = [tags%on_wall, more%on_wall]
   end subroutine add_tags
 
   pure subroutine add_columns(more, flags)
@@ -107,7 +108,7 @@ contains
     allocate (on_set(size(tags%on_set, 1), 1), on_group(size(tags%on_group, 1), 1), source=.false.)
     do k = 1, 2
       associate (side => ends(k))
-        if (any(tags%on_fixation(:, side)) .or. any(tags%on_die(:, side)) .or. tags%on_axis(side)) cycle
+        if (any(tags%on_fixation(:, side)) .or. any(tags%on_die(:, side)) .or. tags%on_wall(side)) cycle
         on_set(:, 1) = on_set(:, 1) .or. tags%on_set(:, side)
         on_group(:, 1) = on_group(:, 1) .or. tags%on_group(:, side)
       end associate
@@ -117,6 +118,7 @@ contains
     call add_columns(reshape(spread(.false., 1, size(tags%on_fixation, 1)), [size(tags%on_fixation, 1), 1]), tags%on_fixation)
     call add_columns(reshape(spread(.false., 1, size(tags%on_die, 1)), [size(tags%on_die, 1), 1]), tags%on_die)
     tags%on_axis = [tags%on_axis, .false.]
+    tags%on_wall = [tags%on_wall, .false.]
   end subroutine add_cut_tags
 
   !> Contact intervals of which one run of arcs is left; where the cut goes through one it begins or ends there. Others are dropped:

@@ -40,7 +40,7 @@ contains
           call close_boundary(options%corner_turn, boundary)
           allocate (tags%on_set(size(scene%mesh%sides), n), tags%on_group(size(scene%groups), n), &
                     tags%on_fixation(size(scene%fixations), n), tags%on_die(size(scene%dies), n), source=.false.)
-          allocate (tags%on_axis(n), source=.false.)
+          allocate (tags%on_axis(n), tags%on_wall(n), source=.false.)
           do s = 1, size(scene%mesh%sides)
             do k = 1, n
               tags%on_set(s, k) = scene%mesh%sides(s)%name == scene%groups(cards(c)%group)%name//'.'//to_text(cards(c)%row(k))

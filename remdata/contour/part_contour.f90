@@ -3,7 +3,7 @@
 !> Between a beginning and an end of contact the part's contour is replaced by the die's at the depth that carries the pressure
 !> (contact_placement, contour_assembly), and the part keeps its volume (volume_correction).
 module part_contour
-  use axis_nodes, only: limit_depths, put_on_axis
+  use axis_nodes, only: limit_depths
   use body_contact_ends, only: add_body_contact_ends
   use boundary_curves, only: closest_position, joint_point, kind_entry, kind_exit, largest_gap, point_on, size_of_boundary
   use boundary_sides, only: find_loops, loop_t, loops_found, shared_by_three
@@ -15,8 +15,9 @@ module part_contour
   use folded_sides, only: open_folds
   use kinds, only: wp
   use loop_intervals, only: side_point_t
+  use placed_walls, only: lay_sides, place_walls, placed_wall_t, put_on_walls
   use refused_laps, only: refuse_laps
-  use scene, only: axisymmetric, is_solid, scene_t, solid_elements
+  use scene, only: is_solid, scene_t, solid_elements
   use side_tags, only: find_tags, held_nodes
   use solution, only: present_coordinates, solution_t
   use text, only: to_text
@@ -45,6 +46,7 @@ contains
     real(wp) :: x(2, size(scene%mesh%coordinates, 2)), uncorrected(2, size(scene%mesh%coordinates, 2))
     logical :: held(size(x, 2))
     type(side_point_t), allocatable :: joints(:)
+    type(placed_wall_t), allocatable :: walls(:)
     integer :: status, node, k, i
 
     uncorrected = present_coordinates(scene, solution)
@@ -53,7 +55,8 @@ contains
     call open_folds(scene, solution, x, report%folds, report%opened)
     ! what opens folds is taken back on the new mesh: free sides make no room for it
     if (allocated(report%opened)) uncorrected = uncorrected + report%opened
-    if (scene%plane_state == axisymmetric) call put_on_axis(x)
+    call place_walls(scene, uncorrected, walls)
+    call put_on_walls(walls, x, nodes_of_walls(walls, size(x, 2)))
     call gather_solids(scene, connectivity)
     call find_loops(connectivity, size(x, 2), loops, status, node)
     allocate (contours(size(loops)), report%limits(0), report%laps(0), report%points(2, 0))
@@ -63,8 +66,11 @@ contains
                            status == shared_by_three)))
       return
     end if
+    do k = 1, size(loops)
+      call lay_sides(walls, loops(k)%sides, nodes_of_walls(walls, size(x, 2)), x)
+    end do
     held = held_nodes(scene) .or. repeated_nodes(loops, size(x, 2))
-    if (scene%plane_state == axisymmetric) held = held .or. nodes_on_axis(loops, x)
+    held = held .or. nodes_on_walls(walls, loops, x)
     do k = 1, size(loops)
       contours(k)%loop = loops(k)
       call find_tags(scene, loops(k), x, contours(k)%tags)
@@ -111,20 +117,38 @@ contains
     end do
   end function repeated_nodes
 
-  !> Nodes of the loops at which a contour meets the axis: a shift of the sides must not move them across it.
-  pure function nodes_on_axis(loops, x) result(meets)
+  !> Nodes that must not cross each of the walls.
+  pure function nodes_of_walls(walls, nnode) result(acts_on)
+    type(placed_wall_t), intent(in) :: walls(:)
+    integer, intent(in) :: nnode
+    logical :: acts_on(nnode, size(walls))
+    integer :: k
+
+    do k = 1, size(walls)
+      acts_on(:, k) = walls(k)%acts_on
+    end do
+  end function nodes_of_walls
+
+  !> Nodes of the loops at which a contour meets a wall: a shift of the sides must not move them across it.
+  pure function nodes_on_walls(walls, loops, x) result(meets)
+    type(placed_wall_t), intent(in) :: walls(:)
     type(loop_t), intent(in) :: loops(:)
     real(wp), intent(in) :: x(:, :)   !! (2, nnode) now [length]
     logical :: meets(size(x, 2))
-    integer :: k, i
+    integer :: w, k, i
 
     meets = .false.
-    do k = 1, size(loops)
-      do i = 1, 2
-        meets(loops(k)%sides(i, :)) = .not. x(1, loops(k)%sides(i, :)) > 0
+    do w = 1, size(walls)
+      do k = 1, size(loops)
+        do i = 1, 2
+          associate (nodes => loops(k)%sides(i, :), wall => walls(w))
+            meets(nodes) = meets(nodes) .or. (wall%acts_on(nodes) .and. &
+                                              .not. wall%side*(x(wall%component, nodes) - wall%place) > 0)
+          end associate
+        end do
       end do
     end do
-  end function nodes_on_axis
+  end function nodes_on_walls
 
   !> Elements of all bodies in one list.
   pure subroutine gather_solids(scene, connectivity)

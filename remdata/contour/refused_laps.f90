@@ -7,7 +7,7 @@ module refused_laps
   use loop_group, only: group_of_element
   use scene, only: scene_t
   use side_tags, only: side_tags_t
-  use support_planes, only: plane_beside
+  use support_planes, only: plane_beside, wall_beside
   use text, only: to_text
   implicit none
   private
@@ -47,6 +47,11 @@ contains
       call fail(error, exit_no_convergence, scene%groups(bodies(1))%name//' and '//scene%groups(bodies(2))%name// &
                 ' have gone through each other, at '//place//': their sides there are in no contact with each other', &
                 'name these sides of the one body in a die, DIE name SIDES place, and those of the other in its CNT2D')
+    else if (len(plane) > 0 .and. wall_beside(scene, laps(1)%point)) then
+      call fail(error, exit_no_convergence, &
+                'the contour folds over itself on the plane '//plane//' in which '//scene%groups(bodies(1))%name// &
+                ' is held, at '//place, &
+                'remesh earlier, or with smaller elements (SIZE), before the sides that lie on the plane fold')
     else if (len(plane) > 0) then
       call fail(error, exit_no_convergence, &
                 'the contour folds onto the plane '//plane//' in which '//scene%groups(bodies(1))%name//' is held, at '//place// &

@@ -1,7 +1,7 @@
 !> The boundary curve of a contour with the volume that it had.
 !>
 !> Where contact replaces the part's sides by the die's the volume changes slightly; a small uniform displacement of the free sides
-!> restores it. Sides with supports, on the axis, in contact, and those that are dies of another body are not moved.
+!> restores it. Sides with supports, on walls, in contact, and those that are dies of another body are not moved.
 module volume_correction
   use boundary_curves, only: closest_position, point_on, position_t
   use contour_assembly, only: assemble_boundary
@@ -29,7 +29,7 @@ contains
   !> The boundary curve, and the displacement of the free sides that keeps the volume.
   pure subroutine keep_volume(scene, x, uncorrected, held, options, joints, contour)
     type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: x(:, :)             !! (2, nnode) now, those on the axis limited in depth [length]
+    real(wp), intent(in) :: x(:, :)             !! (2, nnode) now, those on walls limited in depth [length]
     real(wp), intent(in) :: uncorrected(:, :)   !! (2, nnode) now, with folds opened [length]
     logical, intent(in) :: held(:)              !! (nnode) fixed nodes
     type(contour_options_t), intent(in) :: options
@@ -49,7 +49,7 @@ contains
     contour%volume_after = volume_inside(contour%boundary, round)
     if (size(contour%contacts) + size(contour%points) == 0) return
     moved = x
-    may_move = .not. (contour%tags%on_axis .or. any(contour%tags%on_die, 1))
+    may_move = .not. (contour%tags%on_wall .or. any(contour%tags%on_die, 1))
     do k = 1, size(contour%contacts)
       associate (interval => contour%contacts(k)%interval)
         do i = min(interval%from%side, interval%found(1)%side), max(interval%to%side, interval%found(2)%side)

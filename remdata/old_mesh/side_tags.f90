@@ -7,6 +7,7 @@ module side_tags
   use boundary_sides, only: loop_t
   use dies, only: is_deformable
   use kinds, only: wp
+  use placed_walls, only: place_walls, placed_wall_t
   use scene, only: axisymmetric, scene_t
   implicit none
   private
@@ -19,9 +20,10 @@ module side_tags
     logical, allocatable :: on_fixation(:, :)   !! (nfixation, nside)
     logical, allocatable :: on_die(:, :)        !! deformable dies that the side is a piece of (ndie, nside)
     logical, allocatable :: on_axis(:)          !! (nside)
+    logical, allocatable :: on_wall(:)          !! free ones on a wall, the axis or another (nside)
   end type side_tags_t
 
-  !> A radius below this share of the largest one is zero.
+  !> A radius, or a distance from a wall, below this share of the largest one is zero.
   real(wp), parameter :: no_radius = 1.0e-9_wp
 
 contains
@@ -31,14 +33,15 @@ contains
     type(loop_t), intent(in) :: loop
     real(wp), intent(in) :: x(:, :)   !! nodes now (2, nnode) [length]
     type(side_tags_t), intent(out) :: tags
-    integer :: side_at(size(x, 2)), n, k
+    type(placed_wall_t), allocatable :: walls(:)
+    integer :: side_at(size(x, 2)), n, k, w
 
     n = size(loop%sides, 2)
     side_at = 0
     side_at(loop%sides(2, :)) = [(k, k=1, n)]
     allocate (tags%on_set(size(scene%mesh%sides), n), tags%on_group(size(scene%groups), n), &
               tags%on_fixation(size(scene%fixations), n), tags%on_die(size(scene%dies), n), source=.false.)
-    allocate (tags%on_axis(n), source=.false.)
+    allocate (tags%on_axis(n), tags%on_wall(n), source=.false.)
     do k = 1, size(scene%mesh%sides)
       call mark(scene%mesh%sides(k)%nodes(2, :), tags%on_set(k, :))
     end do
@@ -51,9 +54,21 @@ contains
     do k = 1, size(scene%dies)
       if (is_deformable(scene%dies(k))) call mark(scene%dies(k)%nodes(2, :), tags%on_die(k, :))
     end do
-    if (scene%plane_state /= axisymmetric) return
-    do k = 1, n
-      tags%on_axis(k) = all(abs(x(1, loop%sides(:, k))) <= no_radius*maxval(abs(x(1, loop%sides(2, :)))))
+    if (scene%plane_state == axisymmetric) then
+      do k = 1, n
+        tags%on_axis(k) = all(abs(x(1, loop%sides(:, k))) <= no_radius*maxval(abs(x(1, loop%sides(2, :)))))
+      end do
+    end if
+    tags%on_wall = tags%on_axis
+    call place_walls(scene, x, walls)
+    do w = 1, size(walls)
+      if (walls(w)%number == 0 .or. .not. walls(w)%acts_on(loop%sides(1, 1))) cycle
+      associate (d => abs(x(walls(w)%component, :) - walls(w)%place))
+        do k = 1, n
+          tags%on_wall(k) = tags%on_wall(k) .or. (.not. any(tags%on_fixation(:, k)) .and. &
+                                                  all(d(loop%sides(:, k)) <= no_radius*maxval(d(loop%sides(2, :)))))
+        end do
+      end associate
     end do
 
   contains
@@ -79,7 +94,7 @@ contains
     same = all(tags%on_set(:, one) .eqv. tags%on_set(:, other)) .and. &
            all(tags%on_group(:, one) .eqv. tags%on_group(:, other)) .and. &
            all(tags%on_fixation(:, one) .eqv. tags%on_fixation(:, other)) .and. &
-           all(tags%on_die(:, one) .eqv. tags%on_die(:, other)) .and. (tags%on_axis(one) .eqv. tags%on_axis(other))
+           all(tags%on_die(:, one) .eqv. tags%on_die(:, other)) .and. (tags%on_wall(one) .eqv. tags%on_wall(other))
   end function same_tags
 
   !> Kept corners: whether a new mesh has a node where each side ends, too, because the tags change there or the contour turns.

@@ -51,11 +51,12 @@ contains
       end do
     end do
     if (.not. any(equations%wall%held)) return
-    associate (reaction => fields(displacement_field)%reaction(1, :), number => equations%dofs%fields(displacement_field)%number)
-      do k = 1, size(reaction)
-        ! where a support holds the node the force of the wall is part of what it carries
-        if (number(1, k) == 0) cycle
-        if (equations%dofs%is_free(number(1, k))) reaction(k) = equations%wall%force(k)
+    associate (reaction => fields(displacement_field)%reaction, number => equations%dofs%fields(displacement_field)%number)
+      do k = 1, size(reaction, 2)
+        do c = 1, 2
+          ! where a support holds the node too, what the wall does to it is part of what it carries
+          if (number(c, k) > 0) reaction(c, k) = reaction(c, k) + equations%wall%force(c, k)
+        end do
       end do
     end associate
   end subroutine book_reactions

@@ -12,11 +12,12 @@ module history
   use history_columns, only: columns_of_die_heat, columns_of_steps
   use kinds, only: pi, wp
   use path_record, only: motion_error, stress_error
+  use placed_walls, only: reaction_beside
   use point_volumes, only: volumes_of_points
   use probes, only: probe_maximum, probe_mean, probe_minimum, probe_node, probe_point, probe_reaction, probe_t
   use quad8_geometry, only: quad8_rule, quad8_rule_t
   use scene, only: axisymmetric, generalised_plane_strain, scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use step_outcome, only: outcome_t
   use stress_measures, only: stress_measure
   use text, only: add_text, string_t
@@ -191,7 +192,11 @@ contains
         end if
       end associate
     case (probe_reaction)
-      value = sum(solution%fields(displacement_field)%reaction(probe%quantity, probe%nodes))
+      associate (reaction => solution%fields(displacement_field)%reaction(probe%quantity, :))
+        value = sum(reaction(probe%nodes))
+        if (allocated(scene%walls)) value = value + reaction_beside(scene, present_coordinates(scene, solution), probe%quantity, &
+                                                                    probe%nodes, reaction)
+      end associate
     case (probe_point)
       value = state_of(solution, probe, probe%point, probe%element)
     case (probe_maximum, probe_minimum)

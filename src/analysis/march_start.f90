@@ -14,16 +14,18 @@ module march_start
   use judge_remesh, only: limit_lines, refuse_remesh
   use listing, only: list_balance, list_lines, list_note
   use memory_limits, only: require_memory
+  use placed_walls, only: place_walls, placed_wall_t
   use restart_report, only: write_restart
   use restore_balance, only: balance_t, keep_balance, restore_equilibrium
   use results, only: open_results, save_fields
   use run_record, only: run_t, save_all
   use scene, only: scene_t
-  use solution, only: solution_t
+  use solution, only: present_coordinates, solution_t
   use step_outcome, only: outcome_t
   use sudden_loads, only: sudden_load_words
   use system, only: join_path
   use text, only: to_text, two_digits
+  use wall_contact, only: find_wall_sides
   use watch_mesh, only: ask_for_trims, estimate_stress, mesh_is_due, note_first_narrow
   implicit none
   private
@@ -44,6 +46,10 @@ contains
     if (.not. allocated(error)) call require_memory(8*sum(run%equations%solves%solver%estimated_entries), &
       'the factors of the matrix', error, address_space=run%equations%team%most*blas_buffer)
     if (allocated(error)) return
+    ! an operation begins with the deck's own mesh and the motion of those before it
+    if (scene%fields(displacement_field)%declared) &
+      call find_wall_sides(scene, run%equations%laws, run%equations%dofs, present_coordinates(scene, solution), run%equations%wall)
+    call note_dropped_walls(scene, solution, run)
     call start_drivers(scene, run%equations%laws, solution, run%equations%drivers)
     call measure_scene(scene, run%equations, solution, run%totals)
     if (scene%remesh%estimate) call set_up_estimator(scene, run%equations%laws, run%estimator)
@@ -70,6 +76,22 @@ contains
       call save_fields(scene, solution, run%results, error)
     end if
   end subroutine start_march
+
+  !> Walls of the deck that are none for this operation.
+  subroutine note_dropped_walls(scene, solution, run)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(inout) :: run
+    type(placed_wall_t), allocatable :: placed(:)
+    integer, allocatable :: dropped(:)
+    integer :: k
+
+    call place_walls(scene, present_coordinates(scene, solution), placed, dropped)
+    do k = 1, size(dropped)
+      call list_note(run%listing, 'note: '//scene%walls(dropped(k))%label//' is no wall now: its line has been bent, or its body ' &
+                     //'is behind it, since the deck''s own mesh')
+    end do
+  end subroutine note_dropped_walls
 
   !> An operation begins: what the dies of the one before and its supports carried is taken off the part, at fixed time. What this
   !> changes of the elastic energy is kept apart, as on a new mesh.

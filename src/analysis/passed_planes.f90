@@ -1,7 +1,8 @@
 !> Bodies that have passed through the plane in which a side of theirs is held.
 !>
 !> A support in one direction alone along a straight side, with all of the body on one side of it, is mostly a plane of symmetry.
-!> Nothing keeps free sides from passing it: the mirror image that they would meet is in no deck, and the run ends with code 0.
+!> Where it is no wall (walls) nothing keeps free sides from passing it: the mirror image that they would meet is in no deck, and
+!> the run ends with code 0.
 module passed_planes
   use kinds, only: wp
   use scene, only: is_solid, scene_t
@@ -52,9 +53,21 @@ contains
         if (depth <= deep*max(above, below)) cycle
         call add_text(warnings, scene%groups(g)%name//' has passed the plane '//axes(c:c)//' = '//to_text(plane, 4)// &
                       ' in which it is held ('//scene%fixations(f)%label//'), by '//to_text(depth, 3)// &
-                      ': a plane of symmetry has the mirror image there, let the body face a DIE along it')
+                      advice(scene%fixations(f)%may_pass))
       end do
     end do
   end subroutine warn_of_passed_planes
+
+  !> What follows for the deck.
+  pure function advice(may_pass) result(words)
+    logical, intent(in) :: may_pass   !! the card lets it
+    character(len=:), allocatable :: words
+
+    if (may_pass) then
+      words = ', as NOWALL lets it'
+    else
+      words = ': a plane of symmetry has the mirror image there, let the body face a DIE along it'
+    end if
+  end function advice
 
 end module passed_planes

@@ -22,6 +22,7 @@ module summary
   use summary_checks, only: add_advice, add_checks, add_estimate
   use summary_effects, only: add_effects, add_seconds
   use system, only: cpu_seconds, peak_memory_mb
+  use wall_reactions, only: add_wall_reactions
   implicit none
   private
   public :: write_summary
@@ -88,6 +89,7 @@ contains
       call json%end_object()
     end do
     call json%end_array()
+    call add_wall_reactions(json, scene, solution)
     call add_steels(json, scene, equations)
     call add_effects(json, scene, equations)
     call add_seconds(json, equations)

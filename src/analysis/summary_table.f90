@@ -19,6 +19,7 @@ module summary_table
   use strategy, only: coupling_once
   use system, only: cpu_seconds, peak_memory_mb
   use text, only: add_text, string_t, to_text
+  use wall_reactions, only: list_wall_reactions
   implicit none
   private
   public :: summary_lines
@@ -51,6 +52,7 @@ contains
       call add_text(lines, '  WARNING: '//facts%warnings(t)%s)
     end do
     call add_contact(scene, solution, lines)
+    call list_wall_reactions(scene, solution, lines)
     call add_text(lines, '  '//to_text(sum(equations%solves%neq))//' equations, '//to_text(solid_elements(scene))//' elements, ' &
                   //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
                   //to_text(cpu_seconds(), 4)//' s of processor, '//to_text(peak_memory_mb(), 4)//' MB')

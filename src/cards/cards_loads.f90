@@ -97,22 +97,27 @@ contains
     end do
   end subroutine read_loads
 
-  !> `place X|Y|XY`: held where it is.
+  !> `place X|Y|XY [NOWALL]`: held where it is.
   subroutine read_fixed(cursor, draft, prescribed, given, diagnostics)
     type(cursor_t), intent(inout) :: cursor
     type(draft_t), intent(inout) :: draft
     integer, intent(inout) :: prescribed(:, :)
     type(location_t), allocatable, intent(inout) :: given(:)
     type(diagnostics_t), intent(in), target :: diagnostics
-    type(string_t), allocatable :: directions(:)
+    type(string_t), allocatable :: directions(:), options(:)
     type(place_t) :: place
     type(fixation_t) :: fixation
-    integer :: direction, component
+    integer :: direction, component, option
 
+    call words_of('NOWALL', options)
     call words_of('X Y XY', directions)
     call read_place(cursor, draft, .false., place)
     call refuse_without_field(cursor, draft, displacement_field, place%nodes, place%label, own=.true.)
     call cursor%name('a direction', directions, direction)
+    if (cursor%more()) then
+      call cursor%name('NOWALL or nothing', options, option)
+      fixation%may_pass = option == 1
+    end if
     do component = 1, 2
       if (direction /= component .and. direction /= 3) cycle
       fixation%nodes = place%nodes

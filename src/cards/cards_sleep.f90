@@ -10,8 +10,9 @@ module cards_sleep
   use dies, only: is_deformable
   use loads, only: start_t
   use probes, only: probe_node, probe_reaction, probe_t
-  use scene, only: group_t, host_of, is_solid, scene_t
+  use scene, only: group_t, host_of, is_solid, scene_t, wall_t
   use text, only: string_t
+  use walls, only: find_walls
   implicit none
   private
   public :: list_sleepers, may_sleep, put_to_sleep, sleep_keyword
@@ -152,6 +153,8 @@ contains
       call keep_sides(awake, scene%mesh%sides(k)%nodes)
     end do
     call keep_probes(number, awake, scene)
+    ! without the sleepers a line may be another
+    call find_walls([wall_t ::], scene)
   end subroutine take_out
 
   !> Groups and values at the start that stay. (Lists of types with allocatable components are copied one by one.)

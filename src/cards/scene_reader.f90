@@ -42,10 +42,11 @@ module scene_reader
   use remesh, only: remesh_t
   use remeshed_parts, only: order_as_remeshed, replace_parts
   use remesher_options, only: has_contours
-  use scene, only: role_die_heat, scene_t
+  use scene, only: lacks_mesh, role_die_heat, scene_t, wall_t
   use scene_draft, only: draft_t, start_draft, words_of
   use scene_effects, only: list_effects
   use text, only: string_t
+  use walls, only: find_walls
   implicit none
   private
   public :: read_scene, known_cards
@@ -64,9 +65,11 @@ contains
     type(draft_t) :: draft
     type(mesh_parts_t) :: parts
     type(string_t), allocatable :: keywords(:)
+    type(wall_t), allocatable :: known(:)
     logical :: has_own_mesh
     integer :: k
 
+    allocate (known(0))
     has_own_mesh = .not. present(remesh)
     call start_draft(draft)
     if (present(fineness)) draft%mesh_factor = fineness%mesh
@@ -144,6 +147,10 @@ contains
     if (diagnostics%count() == 0) call refuse_missing_drivers(draft, diagnostics)
     if (diagnostics%count() == 0) call settle_patches(deck, draft, diagnostics)
     if (diagnostics%count() == 0) call list_effects(deck, draft%laws, draft%elems, diagnostics, draft%scene)
+    if (present(remesh)) then
+      if (allocated(remesh%walls)) known = remesh%walls
+    end if
+    if (diagnostics%count() == 0 .and. .not. lacks_mesh(draft%scene)) call find_walls(known, draft%scene)
     scene = draft%scene
   end subroutine read_scene
 

@@ -13,6 +13,7 @@ module scene_summary
   use sections, only: section_drive_t, section_forced, section_moved, section_names
   use summary_words, only: direction_names, times
   use text, only: add_text, padded, string_t, to_text
+  use wall_summary, only: add_walls
   implicit none
   private
   public :: scene_lines
@@ -71,7 +72,7 @@ contains
     end do
   end subroutine add_parts
 
-  !> What drives the section, supports, forces on nodes; probes.
+  !> What drives the section, supports, walls, forces on nodes; probes.
   subroutine add_loads(scene, lines)
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(inout) :: lines(:)
@@ -83,6 +84,7 @@ contains
     do k = 1, size(scene%fixations)
       call add_text(lines, 'load       '//padded(scene%fixations(k)%label, 24)//to_text(size(scene%fixations(k)%nodes))//' nodes')
     end do
+    call add_walls(scene, lines)
     do k = 1, size(scene%forces)
       associate (force => scene%forces(k))
         call add_text(lines, 'load       '//padded('FORCE node '//to_text(scene%mesh%labels(force%node))//' ' &

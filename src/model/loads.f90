@@ -46,6 +46,8 @@ module loads
     integer :: multiplier = 0
     !> Place in the scene's list of fields.
     integer :: field = displacement_field
+    !> The line that it holds is no wall for its body (walls).
+    logical :: may_pass = .false.
     !> As the deck names it, for listings.
     character(len=:), allocatable :: label
   end type fixation_t

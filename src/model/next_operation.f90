@@ -32,6 +32,7 @@ contains
     remesh%own_mesh = scene%remesher%own_mesh
     if (.not. allocated(remesh%folding)) allocate (remesh%folding(0))
     allocate (remesh%sides, source=scene%mesh%sides)
+    if (allocated(scene%walls)) remesh%walls = scene%walls
     allocate (remesh%groups(size(scene%groups)))
     do g = 1, size(scene%groups)
       remesh%groups(g)%name = scene%groups(g)%name

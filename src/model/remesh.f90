@@ -3,6 +3,7 @@ module remesh
   use kinds, only: wp
   use mesh, only: side_set_t
   use remesher_options, only: own_mesh_t
+  use scene, only: wall_t
   use text, only: string_t
   implicit none
   private
@@ -31,6 +32,8 @@ module remesh
     !> All groups and all sets of sides of the scene, in its order.
     type(elements_t), allocatable :: groups(:)
     type(side_set_t), allocatable :: sides(:)
+    !> Walls that have been found before; their nodes are found anew.
+    type(wall_t), allocatable :: walls(:)
     !> The deck's own mesh, which is not made again.
     type(own_mesh_t) :: own_mesh
   end type remesh_t

@@ -20,7 +20,7 @@ module scene
   use weld_sources, only: weld_source_t
   implicit none
   private
-  public :: scene_t, group_t, plane_state_names, host_of, is_later_operation, is_solid, lacks_mesh, pilot_at, solid_elements
+  public :: scene_t, group_t, wall_t, plane_state_names, host_of, is_later_operation, is_solid, lacks_mesh, pilot_at, solid_elements
   public :: role_body, role_second, role_contact, role_side_load, role_volume_load, role_spring, role_heat_contact, role_die_heat
   public :: role_load_factor
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
@@ -93,6 +93,15 @@ module scene
     type(state_variable_t), allocatable :: variables(:)
   end type group_t
 
+  !> A plane of symmetry, which is a wall for the body that a support holds in it (walls).
+  type :: wall_t
+    !> The support as the deck names it, and the direction across the line: 1 = x, 2 = y.
+    character(len=:), allocatable :: label
+    integer :: component = 0
+    !> The body is where coordinates are larger (1) or smaller (-1) than on the line; and a node on the line.
+    integer :: side = 0, node = 0
+  end type wall_t
+
   type :: scene_t
     character(len=:), allocatable :: title
     integer :: plane_state = 0
@@ -118,6 +127,7 @@ module scene
     type(die_t), allocatable :: dies(:)
     type(multiplier_t), allocatable :: multipliers(:)
     type(fixation_t), allocatable :: fixations(:)
+    type(wall_t), allocatable :: walls(:)
     type(die_motion_t), allocatable :: die_motions(:)
     type(die_force_t), allocatable :: die_forces(:)
     type(die_heat_t), allocatable :: die_heats(:)

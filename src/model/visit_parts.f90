@@ -1,12 +1,13 @@
-!> The members of the mesh, of dies and supports (visitors).
+!> The members of the mesh, of dies, supports and walls (visitors).
 module visit_parts
   use dies, only: die_t, is_deformable
   use loads, only: fixation_t
   use mesh, only: mesh_t, side_set_t
+  use scene, only: wall_t
   use visitors, only: kept, of_the_mesh, visitor_t
   implicit none
   private
-  public :: visit_die, visit_fixation, visit_mesh
+  public :: visit_die, visit_fixation, visit_mesh, visit_wall
 
   !> Sets of sides at most.
   integer, parameter :: most_sets = 100000
@@ -73,7 +74,18 @@ contains
     call visitor%derived('amplitude', of_the_deck)
     call visitor%derived('multiplier', of_the_deck)
     call visitor%derived('field', of_the_deck)
+    call visitor%derived('may_pass', of_the_deck)
     call visitor%derived('label', of_the_deck)
   end subroutine visit_fixation
+
+  subroutine visit_wall(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(wall_t), intent(inout) :: self
+
+    call visitor%member('label', self%label, kept)
+    call visitor%member('component', self%component, kept, low=1, high=2)
+    call visitor%member('side', self%side, kept, low=-1, high=1)
+    call visitor%member('node', self%node, of_the_mesh, low=1)
+  end subroutine visit_wall
 
 end module visit_parts

@@ -6,7 +6,7 @@ module visit_scene
   use visit_field, only: visit_field_declaration
   use visit_group, only: visit_group_members
   use visit_material, only: visit_material_members
-  use visit_parts, only: visit_die, visit_fixation, visit_mesh
+  use visit_parts, only: visit_die, visit_fixation, visit_mesh, visit_wall
   use visit_remesher, only: visit_remesher_options
   use visitors, only: kept, recomputed, visitor_t
   implicit none
@@ -111,6 +111,15 @@ contains
       call visitor%enter_item('fixations', k)
       call visit_fixation(visitor, self%fixations(k))
       call visitor%leave('fixations')
+    end do
+    n = 0
+    if (allocated(self%walls)) n = size(self%walls)
+    call visitor%list('walls', n, most_parts)
+    if (.not. allocated(self%walls)) allocate (self%walls(n))
+    do k = 1, n
+      call visitor%enter_item('walls', k)
+      call visit_wall(visitor, self%walls(k))
+      call visitor%leave('walls')
     end do
   end subroutine visit_lists
 

@@ -1,6 +1,6 @@
 !> Numbering, pattern and analysis of the equations: once per mesh, and again where contact between bodies finds other pairs.
 module equation_set_up
-  use axis_wall, only: find_axis_wall
+  use wall_contact, only: find_wall_sides
   use dof_numbering, only: number_dofs
   use driver_sources, only: find_drivers
   use elem_heat_contact, only: name_of_piece
@@ -59,7 +59,7 @@ contains
     call number_dofs(scene, equations%elems, equations%dofs)
     call refuse_too_large(entries_of(equations%dofs), error)
     if (allocated(error)) return
-    call find_axis_wall(scene, equations%laws, equations%dofs, equations%wall)
+    call find_wall_sides(scene, equations%laws, equations%dofs, scene%mesh%coordinates, equations%wall)
     call list_free_sides(scene, equations%free_sides)
     call find_loose_bodies(scene, equations%dofs, equations%loose)
     allocate (equations%slides(3, size(scene%dies)), source=.false.)

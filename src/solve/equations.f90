@@ -1,7 +1,7 @@
 !> The discrete equations of a scene, as data: unknowns, solves and their patterns, what elements and laws there are, buffers of the
 !> element loop. They are set up in `equation_set_up`, evaluated in `evaluation`, and solved for a correction in `corrections`.
 module equations
-  use axis_wall, only: axis_wall_t
+  use wall_contact, only: wall_contact_t
   use dofs, only: dofs_t
   use drivers, only: drivers_t
   use elem_api, only: elem_t, mode_advance
@@ -51,8 +51,8 @@ module equations
     type(torch_step_t), allocatable :: torches
     integer :: remedy = remedy_none
     type(element_buffers_t) :: buffers
-    !> Sides that must not cross the axis, and what holds them.
-    type(axis_wall_t) :: wall
+    !> Sides that must not cross walls, and what holds them.
+    type(wall_contact_t) :: wall
     !> Sides of bodies that may pass through one another.
     type(free_sides_t) :: free_sides
     !> Elements at most in a patch (nonlinear_elimination), 0 where none is eliminated; elements by their nodes where patches are.

@@ -1,7 +1,7 @@
 !> Internal forces and matrices of the present solve at a motion of the step, and the error of a heat content.
 module evaluation
-  use axis_wall, only: press_on_axis
-  use elem_api, only: block_done, instant_t, mode_error, report_t
+  use wall_contact, only: press_on_walls
+  use elem_api, only: block_done, instant_t, mode_error, mode_restore, report_t
   use element_loop, only: gather_forces, gather_matrix, run_elements
   use equation_set_up, only: pair_up, renew_pairs
   use equations, only: equations_t, solves_heat
@@ -74,8 +74,9 @@ contains
       ! round-off is that of the bodies alone
       if (tangent) call set_floors(scene, equations, solution%fields)
       if (solve%own(displacement_field)) &
-        call press_on_axis(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
-                           tangent, equations%wall, equations%buffers%force, equations%buffers%matrix, report)
+        call press_on_walls(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
+                            tangent, equations%mode == mode_restore, equations%wall, equations%buffers%force, &
+                            equations%buffers%matrix, report)
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, equations%force, equations%magnitude)
       damped = allocated(equations%damping) .and. dt > 0 .and. solve%own(displacement_field)
       if (damped) equations%force = equations%force + equations%damping*(du - equations%carried)/dt
@@ -118,7 +119,7 @@ contains
     end do
   end function is_contact
 
-  !> Contact can be evaluated alone: nothing else follows from it, and the wall of the axis has added nothing to element forces.
+  !> Contact can be evaluated alone: nothing else follows from it, and walls have added nothing to element forces.
   pure function is_apart(scene, equations) result(yes)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations

@@ -115,7 +115,7 @@ contains
     type(iteration_t) :: line
     type(shift_t) :: shift
     type(report_t) :: report
-    !> Status of all points of contact, and what the wall of the axis holds, as they were.
+    !> Status of all points of contact, and what walls hold, as they were.
     integer, allocatable :: contact(:)
     logical, allocatable :: held(:, :)
     !> Points that flow, as they were.

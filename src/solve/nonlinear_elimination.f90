@@ -94,7 +94,7 @@ contains
   end subroutine take_eliminated
 
   !> The present solve is of the motion, and elements can be evaluated apart: nothing that the others find in the same iteration
-  !> drives them, and the wall of the axis adds nothing to them.
+  !> drives them, and walls add nothing to them.
   pure function has_patches(scene, equations) result(yes)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations

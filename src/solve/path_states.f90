@@ -1,6 +1,6 @@
 !> States of the bodies whose laws flow, made beside those of a step that has converged: by another motion, from another start.
 module path_states
-  use axis_wall, only: press_on_axis
+  use wall_contact, only: press_on_walls
   use dofs, only: move_fields
   use drivers, only: drivers_t
   use elem_api, only: block_done, instant_t, report_t, totals_t
@@ -98,8 +98,8 @@ contains
     residual = 0
     force = equations%force
     associate (solve => equations%solves(equations%now))
-      call press_on_axis(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
-                         .false., equations%wall, equations%buffers%force, equations%buffers%matrix, unused)
+      call press_on_walls(scene, equations%dofs, solve%pattern, solve%active, solution%fields(displacement_field)%value, du, &
+                          .false., .false., equations%wall, equations%buffers%force, equations%buffers%matrix, unused)
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, force, magnitude)
     end associate
     do f = 1, size(solution%fields)

@@ -34,6 +34,10 @@ contains
     do k = 1, size(scene%fixations)
       call require_range(file, 'fixations/'//to_text(k)//'/nodes', scene%fixations(k)%nodes, 1, nnode)
     end do
+    do k = 1, size(scene%walls)
+      call require_range(file, 'walls/'//to_text(k)//'/node', [scene%walls(k)%node], 1, nnode)
+      call require(file, 'walls/'//to_text(k)//'/side', abs(scene%walls(k)%side) == 1, 'is neither 1 nor -1')
+    end do
     call check_fields(file, scene%fields)
     call check_remesher(file, size(scene%dies), scene%remesher)
     do k = 1, size(scene%dies)

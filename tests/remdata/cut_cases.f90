@@ -28,7 +28,7 @@ contains
     contour%boundary%kinds = kind_corner
     contour%loop%element = [(1, k=1, n)]
     allocate (contour%tags%on_set(n, n), contour%tags%on_group(1, n), contour%tags%on_fixation(1, n), contour%tags%on_die(1, n), &
-              contour%tags%on_axis(n), source=.false.)
+              contour%tags%on_axis(n), contour%tags%on_wall(n), source=.false.)
     ! each side is a set of its own
     do k = 1, n
       contour%tags%on_set(k, k) = .true.

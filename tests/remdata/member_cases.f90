@@ -148,6 +148,11 @@ contains
     call contact_variables(scene%groups(3)%variables)
     call contact_variables(scene%groups(4)%variables)
     scene%fixations = [fixation_t(nodes=[1, 3], component=2)]
+    allocate (scene%walls(1))
+    scene%walls(1)%label = 'FIXED lower.1 Y'
+    scene%walls(1)%component = 2
+    scene%walls(1)%side = -1
+    scene%walls(1)%node = 3
     temperature = field_t(name='temperature', unit='temperature', dual='heat_flow', dual_unit='power', place=on_nodes, &
                           at_corners=.true., ncomp=1, quantity='temperature', imposed_as_value=.true., given=.true., &
                           transfer=transfer_nodal, word='T', initial=20.0_wp, declared=.true.)

@@ -28,7 +28,7 @@ BLOCK b PL8LS 4 m
 LAW m EPLA
  {young} 0.3
  LINEAR {flow}
-FIXED b 1 Y
+FIXED b 1 Y{open}
 {held}
 LIC press
  0. 0. 1. {way}
@@ -40,10 +40,11 @@ SAVE 5
 {more}END
 """
 STICKING = {"outer": 4.0, "height": 1.5, "top": 1.0, "young": 200000.0, "flow": "300. 300.", "held": "FIXED b 3 X\nMOVE b 3 Y press",
-            "force": "Y b 3", "way": -1.0, "more": ""}
-CONE = {"outer": 5.0, "height": 2.0, "top": 2.0, "young": 200000.0, "flow": "20. 0.", "held": "FIXED b 3 Y\nMOVE b 2 X press",
-        "force": "X b 2", "way": -0.27, "more": ""}
-# Name, numbers, divisions, lowest r over the side of the code before (cones: pressed by 0.3, where their sides cross the plane y = 2).
+            "force": "Y b 3", "way": -1.0, "more": "", "open": ""}
+CONE = {"outer": 5.0, "height": 2.0, "top": 2.0, "young": 200000.0, "flow": "20. 0.", "held": "FIXED b 3 Y NOWALL\nMOVE b 2 X press",
+        "force": "X b 2", "way": -0.27, "more": "", "open": " NOWALL"}
+# Name, numbers, divisions, lowest r over the side of the code before (cones: pressed by 0.3, where their sides cross the plane
+# y = 2, which the cards let them: it is the axis that is tried; between walls 0.2387 closes them wholly).
 CASES = [("squeezed-6", STICKING, (6, 3), -0.30), ("squeezed-12", STICKING, (12, 6), -0.08),
          ("cone-8", CONE, (8, 4), -0.48), ("cone-16", CONE, (16, 4), -1.3)]
 PIN = """DIE pin
