@@ -23,6 +23,8 @@ module failed_step
 
   !> So many cutbacks in a row are not answered by damping; damped, a step of the least length is tried until there were so many.
   integer, parameter :: most_cutbacks_undamped = 2, most_cutbacks_damped = 12
+  !> So many cutbacks in a row show that it is no fault of the length when a body passes through itself, and that its sides have met.
+  integer, parameter :: cutbacks_before_contact = 2
   !> So many cutbacks in a row show that a body passes through itself in steps of any length.
   integer, parameter :: most_cutbacks_for_crossing = 3
 
@@ -41,11 +43,12 @@ contains
     type(unheld_die_t) :: unheld
     logical :: give_up, on_probation, softer
 
-    ! at once: steps that are cut back come ever closer, until what overlaps by little is taken for thinned
-    if (outcome%passes_itself .and. .not. outcome%thins_out) then
+    ! in the first of steps that are cut back the sides are far enough apart to tell whether the body is between them
+    if (cutbacks == 0) run%thins_out = outcome%thins_out
+    if (outcome%passes_itself .and. .not. run%thins_out .and. cutbacks >= cutbacks_before_contact) then
       if (law_of_folds(scene, run%equations%laws, outcome%crossing_group) > 0) then
         run%folding = outcome%crossing_group
-        run%folds = outcome%reason
+        run%folds = scene%groups(outcome%crossing_group)%name//' passes through itself'//outcome%crossing_place
         return
       end if
     end if

@@ -30,6 +30,7 @@ module step_outcome
     !> The equilibrium found has a body that passes through itself, one of the group of elements `crossing_group`.
     logical :: passes_itself = .false.
     integer :: crossing_group = 0
+    character(len=:), allocatable :: crossing_place
     !> It has thinned to nothing where it does.
     logical :: thins_out = .false.
     !> Share of the heat through contact that is another by the contact that it leads to, where turns of the solves do not agree on

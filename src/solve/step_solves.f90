@@ -73,15 +73,16 @@ contains
     call equations%timers%start(timer)
     call find_own_crossing(scene, equations%dofs, solution, outcome%du, equations%free_sides, crossing)
     call equations%timers%stop(timer)
-    if (crossing%in_ground) crossing%found = law_of_folds(scene, equations%laws, crossing%group) > 0
+    ! the mesh of a deck without REMSH may be distorted there
+    if (crossing%in_ground .and. scene%remesh%on) crossing%found = law_of_folds(scene, equations%laws, crossing%group) > 0
     if (.not. crossing%found) return
     outcome%converged = .false.
     outcome%passes_itself = .true.
     outcome%crossing_group = crossing%group
     outcome%thins_out = crossing%thinned
+    outcome%crossing_place = ' at x = '//to_text(crossing%point(1), 5)//', y = '//to_text(crossing%point(2), 5)
     outcome%reason = scene%groups(crossing%group)%name &
-                     //trim(merge(' has thinned to nothing', ' passes through itself ', crossing%thinned)) &
-                     //' at x = '//to_text(crossing%point(1), 5)//', y = '//to_text(crossing%point(2), 5)
+                     //trim(merge(' has thinned to nothing', ' passes through itself ', crossing%thinned))//outcome%crossing_place
   end subroutine judge_contours
 
   !> Matrices factorised, or found so, for the motion since the start.
