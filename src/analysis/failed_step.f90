@@ -76,7 +76,6 @@ contains
       end if
     end if
     if (outcome%passes_itself) give_up = give_up .or. cutbacks > most_cutbacks_for_crossing
-    solution%length_by_iterations = min(solution%length_by_iterations, solution%next_step)
     call note_cutback(solution%probation, solution%next_step)
     if (on_probation .and. is_too_short(scene, solution)) then
       call refuse_mesh(scene, solution, outcome, run, error)

@@ -22,7 +22,7 @@ module march
   use spurious_mode, only: has_mean_dilatation, spurious_limit
   use step_outcome, only: outcome_t
   use step_solves, only: solve_fields
-  use step_strategy, only: after_success, by_iterations, choose_step
+  use step_strategy, only: after_success, choose_step
   use system, only: caught_signal
   use text, only: to_text
   use unsettled_contact, only: note_unsettled_contact
@@ -93,16 +93,12 @@ contains
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: length
-    logical :: on_probation, by_errors
+    logical :: on_probation
 
     length = min(solution%next_step, scene%strategy%largest_step)
     on_probation = is_on_probation(solution%probation)
-    by_errors = solution%path%tried_length > 0 .or. solution%next_step < solution%length_by_iterations
-    solution%length_by_iterations = by_iterations(scene, dt, solution%next_step, solution%length_by_iterations, by_errors, &
-                                                  outcome%first_iterations, outcome%patch_difficulty)
     solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain, &
-                                       min(outcome%heat%growth, outcome%path%growth), outcome%patch_difficulty, &
-                                       solution%length_by_iterations)
+                                       min(outcome%heat%growth, outcome%path%growth), outcome%patch_difficulty)
     call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
     if (allocated(error)) return
     call note_missing_austenite(scene, run%equations%laws, solution)

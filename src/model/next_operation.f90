@@ -70,7 +70,6 @@ contains
     after = before
     after%unbalanced = .true.
     after%next_step = fresh%next_step
-    after%length_by_iterations = fresh%length_by_iterations
     after%last_step = 0
     after%older_step = 0
     after%probation = fresh%probation
@@ -86,7 +85,6 @@ contains
     after%damping_bound = after%work%damping
     after%friction_apart = 0
     after%path%error = fresh%path%error
-    after%path%moved_before = before%path%moved
     ! what its last steps erred says nothing of the first ones now, which no estimate is made of (settle_path)
     after%path%motion_rate = 0
     after%path%stress_rate = 0

@@ -49,8 +49,6 @@ module path_record
   type :: path_record_t
     !> Sum over the steps of their motion, in the mean square, and what has come of their errors in it [length].
     real(wp) :: moved = 0.0_wp, moved_error = 0.0_wp
-    !> The first of these as the present operation began [length].
-    real(wp) :: moved_before = 0.0_wp
     !> Error of the places that has come on the present mesh (2, nnode); of no nodes where none is estimated [length].
     real(wp), allocatable :: error(:, :)
     !> Root of the elastic energy: its recent mean, its error now, and the largest that was of that over the scale.

@@ -37,8 +37,6 @@ module solution
     integer :: step = 0
     !> Length of the last accepted step, of the one before it (0: none since the mesh began), and of the one proposed next [time].
     real(wp) :: last_step = 0.0_wp, older_step = 0.0_wp, next_step = 0.0_wp
-    !> What the iterations alone would propose, where errors of steps ask for less [time].
-    real(wp) :: length_by_iterations = 0.0_wp
     !> Unknowns: displacement of the nodes since the mesh began, pilots of the dies, section (sections), and what else the
     !> elements of the scene declare (as `scene%fields`).
     type(field_t), allocatable :: fields(:)

@@ -31,7 +31,6 @@ contains
     call visitor%member('last_step', self%last_step, kept, 'time', low=0.0_wp)
     call visitor%member('older_step', self%older_step, recomputed, 'time', low=0.0_wp)
     call visitor%member('next_step', self%next_step, kept, 'time', low=0.0_wp)
-    call visitor%member('length_by_iterations', self%length_by_iterations, kept, 'time', low=0.0_wp)
     call visitor%member('unbalanced', self%unbalanced, recomputed)
     call visitor%member('between_saves', self%between_saves, recomputed)
     call visitor%member('penalty_share', self%penalty_share, kept, '-', low=0.0_wp)
@@ -160,7 +159,6 @@ contains
 
     call visitor%member('moved', self%moved, kept, 'length', low=0.0_wp)
     call visitor%member('moved_error', self%moved_error, kept, 'length', low=0.0_wp)
-    call visitor%member('moved_before', self%moved_before, kept, 'length', low=0.0_wp)
     call visitor%member('error', self%error, of_the_mesh, 'component, node', 'length')
     call visitor%member('stress_recent', self%stress_recent, kept, 'energy^0.5', low=0.0_wp)
     call visitor%member('stress_error', self%stress_error, kept, 'energy^0.5')

@@ -162,8 +162,8 @@ contains
     if (of_deck > 0) bound = min(default, of_deck)
   end function tighter
 
-  !> Error of the motion over the motion, or over what it is in the mean of the time of the operation where that is more; error of
-  !> the stress over what the deck allows.
+  !> Error of the motion over the motion, or over what it is in the mean of the time where that is more; error of the stress over
+  !> what the deck allows.
   pure subroutine find_sizes(strategy, solution, dt, step)
     type(strategy_t), intent(in) :: strategy
     type(solution_t), intent(in) :: solution
@@ -172,9 +172,7 @@ contains
     real(wp) :: scale, allowed
 
     scale = step%motion
-    associate (record => solution%path, time => solution%time - strategy%begins)
-      if (time > 0) scale = max(scale, (record%moved - record%moved_before)/time*dt)
-    end associate
+    if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
     if (step%motion_error > 0) step%sizes(of_motion) = step%motion_error/scale
     allowed = strategy%rate_bound*bound_scale(solution%path, step%stress, step%flow)
     if (allowed > 0) step%sizes(of_stress) = abs(step%stress_error)/allowed
@@ -193,8 +191,7 @@ contains
     end associate
   end subroutine bound_motion
 
-  !> What a step adds goes with the square of its length, and its share of the time is that of the operation: after hours in
-  !> a furnace a blow has as many steps as by itself. An error against that of the steps before has all the room.
+  !> What a step adds goes with the square of its length. An error against that of the steps before has all the room.
   !>
   !> What was above the bound at the start, as where the stress has fallen, is not paid for by this step: shorter steps do not
   !> forget it sooner. An error counts as at the bound then, so that steps add what is forgotten on the way.
@@ -211,7 +208,7 @@ contains
       at_start = strategy%rate_bound*bound_scale(record, record%stress, record%flow)
       before = sign(1.0_wp, step%stress_error)*stress_before(step, dt, record, most=at_start)
       change = abs(step%stress - record%stress)*dt/(record%pending_time + dt)
-      least = max(strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time - strategy%begins + dt))
+      least = max(strategy%rate_bound*min(change, step%stress), allowed*dt/(solution%time + dt))
       room = max(allowed - max(before, 0.0_wp), least)
       next = max(allowed - step%left*min(max(before + abs(step%stress_error), 0.0_wp), allowed), least)
       if (abs(step%stress_error) > room) next = room
@@ -233,7 +230,6 @@ contains
     associate (step => outcome%path, error => outcome%path%sizes(which))
       if (error <= allowed) then
         step%growth = min(step%growth, max(factor, least_factor))
-        if (record%tried_length > 0) step%growth = min(step%growth, 1.0_wp)
       else if (is_in_vain(record, dt, error, which)) then
         step%above = .true.
         step%no_better = .true.

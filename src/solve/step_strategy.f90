@@ -1,9 +1,6 @@
 !> Length of the steps, in LAGAMINE's tradition: after a step of n iterations the next is multiplied
 !> by (NOPTI/n)**(1/NALPHA), between DMINMU and DMAXMU. Corners of multipliers, times of saving and
 !> of new meshes, and the end are hit exactly.
-!>
-!> Errors of a step and its strain bound the length too, by what they allow to foresee. The length by iterations alone is kept
-!> beside (`by_iterations`): where an error has made steps short, it is the error that lets them grow again, up to there.
 module step_strategy
   use kinds, only: eps, wp
   use loads, only: multiplier_at
@@ -12,19 +9,12 @@ module step_strategy
   use weld_sources, only: times_to_hit
   implicit none
   private
-  public :: choose_step, after_success, after_failure, by_iterations, is_shortest
+  public :: choose_step, after_success, after_failure, is_shortest
 
   !> A failed step is tried again with this share of its length.
   real(wp), parameter :: cutback = 0.5_wp
   !> A step is proposed with this share of the strain bound, so that it need not be cut back.
   real(wp), parameter :: foresight = 0.8_wp
-  !> Steps that errors have made short grow by no more than this from one to the next, as by iterations (DMAXMU by default): an
-  !> estimate foresees the next step and not the one after it (K. Gustafsson, ACM Trans. Math. Software 17 (1991) 533-554, limits
-  !> the growth too). With 2 steps are fewer by a tenth, but the longest ones of a furnace left 2e-6 of martensite untempered.
-  real(wp), parameter :: most_growth = 1.5_wp
-  !> They grow up to this share of what their errors foresee: steps that were all as long as their bounds let them would make the
-  !> most of these, and errors of a neck grow with every one.
-  real(wp), parameter :: cautious = 0.6_wp
   !> A time is reached when it is this close, relative to the end of the scene.
   real(wp), parameter :: reached = 64*eps
 
@@ -105,75 +95,29 @@ contains
   end function next_time
 
   !> Proposal after an accepted step: by its iterations, and no longer than its strain increment and its error in time allow
-  !> to foresee. One that errors have shortened may grow again to the length by iterations.
-  pure function after_success(scene, dt, proposed, iterations, strain, growth, added, remembered) result(next)
+  !> to foresee. A step shortened to hit a time does not shorten the proposal.
+  pure function after_success(scene, dt, proposed, iterations, strain, growth, added) result(next)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt, proposed
     integer, intent(in) :: iterations
     real(wp), intent(in) :: strain   !! largest strain increment of the step
-    real(wp), intent(in), optional :: growth       !! largest factor by the error in time
-    real(wp), intent(in), optional :: added        !! what counts as iterations beside them
-    real(wp), intent(in), optional :: remembered   !! `by_iterations` of this step [time]
+    real(wp), intent(in), optional :: growth   !! largest factor by the error in time
+    real(wp), intent(in), optional :: added    !! what counts as iterations beside them
     real(wp) :: next
-    real(wp) :: most
+    real(wp) :: factor, counted
 
     associate (s => scene%strategy)
-      next = plain_proposal(scene, dt, proposed, iterations, added)
-      if (present(remembered) .and. factor_of(scene, iterations, added) >= 1) then
-        most = most_growth
-        if (present(growth)) most = min(most, cautious*growth)
-        next = max(next, min(remembered, most*dt))
-      end if
+      counted = max(iterations, 1)
+      if (present(added)) counted = counted + added
+      factor = (real(s%nopti, wp)/counted)**(1/s%nalpha)
+      factor = min(max(factor, s%dminmu), s%dmaxmu)
+      next = dt*factor
+      if (dt < proposed .and. factor >= 1) next = max(next, min(proposed, s%largest_step))
       if (strain*next > foresight*s%strain_bound*dt) next = foresight*s%strain_bound/strain*dt
       if (present(growth)) next = min(next, min(growth, s%largest_step/dt)*dt)
       next = min(max(next, s%least_step), s%largest_step)
     end associate
   end function after_success
-
-  !> Length of steps by iterations alone, after an accepted step. Where errors or the strain keep steps below it, it stays, but for
-  !> steps that take more iterations than wanted, which lower it by their factor.
-  pure function by_iterations(scene, dt, proposed, remembered, below, iterations, added) result(length)
-    type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: dt, proposed   !! of the step [time]
-    real(wp), intent(in) :: remembered     !! this length before the step [time]
-    logical, intent(in) :: below           !! the step was made shorter than that by errors
-    integer, intent(in) :: iterations
-    real(wp), intent(in), optional :: added   !! what counts as iterations beside them
-    real(wp) :: length
-
-    length = plain_proposal(scene, dt, proposed, iterations, added)
-    if (below) length = max(length, remembered*min(factor_of(scene, iterations, added), 1.0_wp))
-    length = min(max(length, scene%strategy%least_step), scene%strategy%largest_step)
-  end function by_iterations
-
-  !> Proposal by iterations. A step shortened to hit a time does not shorten it.
-  pure function plain_proposal(scene, dt, proposed, iterations, added) result(next)
-    type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: dt, proposed   !! [time]
-    integer, intent(in) :: iterations
-    real(wp), intent(in), optional :: added
-    real(wp) :: next
-    real(wp) :: factor
-
-    factor = factor_of(scene, iterations, added)
-    next = dt*factor
-    if (dt < proposed .and. factor >= 1) next = max(next, min(proposed, scene%strategy%largest_step))
-  end function plain_proposal
-
-  !> Factor of the length by the iterations of a step.
-  pure function factor_of(scene, iterations, added) result(factor)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: iterations
-    real(wp), intent(in), optional :: added
-    real(wp) :: factor
-    real(wp) :: counted
-
-    associate (s => scene%strategy)
-      counted = max(iterations, 1)
-      if (present(added)) counted = counted + added
-      factor = min(max((real(s%nopti, wp)/counted)**(1/s%nalpha), s%dminmu), s%dmaxmu)
-    end associate
-  end function factor_of
 
   !> Length to try after a failed step; `give_up` when that is below the least step.
   pure subroutine after_failure(scene, dt, next, give_up)
