@@ -23,7 +23,7 @@ module failed_step
 
   !> So many cutbacks in a row are not answered by damping; damped, a step of the least length is tried until there were so many.
   integer, parameter :: most_cutbacks_undamped = 2, most_cutbacks_damped = 12
-  !> So many cutbacks in a row show that it is no fault of the length when a body passes through itself, and that its sides have met.
+  !> So many cutbacks in a row show that it is no fault of the length when a body passes through itself: its sides have met.
   integer, parameter :: cutbacks_before_contact = 2
   !> So many cutbacks in a row show that a body passes through itself in steps of any length.
   integer, parameter :: most_cutbacks_for_crossing = 3
