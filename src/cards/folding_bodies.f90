@@ -1,9 +1,9 @@
 !> Contact of the sides of a body with one another that no card gives.
 !>
 !> A part that folds onto itself, or whose hole closes, passes through itself where nothing keeps its sides apart (own_crossings).
-!> Where shorter steps do so too its sides have met: from there on all free sides of the body are deformable dies, one for each curve
-!> of them, and face one another, by the law of the first of the body's contacts that opens. So what folds nowhere has nothing of
-!> this.
+!> Where shorter steps do so too its sides have met: from there on all free sides of the body are deformable dies, one for each
+!> curve of them, and face one another, by the law of the first of the body's contacts that opens. So what folds nowhere has nothing
+!> of this.
 !>
 !> A body of which a card lets sides meet is left as the card has it.
 module folding_bodies
