@@ -23,8 +23,6 @@ module failed_step
 
   !> So many cutbacks in a row are not answered by damping; damped, a step of the least length is tried until there were so many.
   integer, parameter :: most_cutbacks_undamped = 2, most_cutbacks_damped = 12
-  !> So many cutbacks in a row show that it is no fault of the length when a body passes through itself: its sides have met.
-  integer, parameter :: cutbacks_before_contact = 2
   !> So many cutbacks in a row show that a body passes through itself in steps of any length.
   integer, parameter :: most_cutbacks_for_crossing = 3
 
@@ -45,13 +43,6 @@ contains
 
     ! in the first of steps that are cut back the sides are far enough apart to tell whether the body is between them
     if (cutbacks == 0) run%thins_out = outcome%thins_out
-    if (outcome%passes_itself .and. .not. run%thins_out .and. cutbacks >= cutbacks_before_contact) then
-      if (law_of_folds(scene, run%equations%laws, outcome%crossing_group) > 0) then
-        run%folding = outcome%crossing_group
-        run%folds = scene%groups(outcome%crossing_group)%name//' passes through itself'//outcome%crossing_place
-        return
-      end if
-    end if
     on_probation = is_on_probation(solution%probation)
     unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
@@ -85,6 +76,9 @@ contains
     if (mesh_is_due(solution)) then
       if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
       if (.not. allocated(error)) call save_all(scene, solution, run, error)
+    else if (give_up .and. sides_have_met(scene, outcome, run)) then
+      run%folding = outcome%crossing_group
+      run%folds = scene%groups(outcome%crossing_group)%name//' passes through itself'//outcome%crossing_place
     else if (give_up) then
       ! resumed, it ends the same way
       solution%next_step = dt
@@ -92,6 +86,17 @@ contains
       if (on_probation) call refuse_mesh(scene, solution, outcome, run, error)
     end if
   end subroutine answer_failure
+
+  !> A body passes through itself, and its sides can have contact with one another.
+  pure function sides_have_met(scene, outcome, run) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(outcome_t), intent(in) :: outcome
+    type(run_t), intent(in) :: run
+    logical :: yes
+
+    yes = outcome%passes_itself .and. .not. run%thins_out
+    if (yes) yes = law_of_folds(scene, run%equations%laws, outcome%crossing_group) > 0
+  end function sides_have_met
 
   !> The step is tried again with more damping than before, where a die withdraws, or past a limit point.
   subroutine damp(scene, dt, on_probation, outcome, solution, run)

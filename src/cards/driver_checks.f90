@@ -61,8 +61,11 @@ contains
     integer, intent(in) :: g   !! number of a group of this law
     logical :: yes
 
-    associate (law => draft%laws(draft%scene%materials(draft%scene%groups(g)%material)%law_id))
-      yes = law%of_steel .and. law%kind == solid_law
+    yes = .false.
+    if (draft%scene%groups(g)%material == 0) return
+    associate (material => draft%scene%materials(draft%scene%groups(g)%material))
+      if (material%law_id == 0) return
+      yes = draft%laws(material%law_id)%of_steel .and. draft%laws(material%law_id)%kind == solid_law
     end associate
   end function follows_phases
 

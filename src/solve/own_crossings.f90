@@ -3,8 +3,7 @@
 !> Nothing but contact keeps the sides of a body apart, so a body without it may fold through itself in equilibrium. Sides that
 !> face each other in contact overlap by the depth of contact: where a point of either is in contact, they do not count. Nor does a
 !> loop of few sides that encloses hardly anything, where a fold has used up a side; nor do neighbours, whose parabolas may cross
-!> beside their common node in a distorted mesh: the shape of elements is judged elsewhere. Neighbours that lie on one another in
-!> the ground of a notch are told apart: sides that are to have contact from there on must not overlap before.
+!> beside their common node in a distorted mesh: the shape of elements is judged elsewhere.
 module own_crossings
   use arc_crossings, only: crossings_between, find_meeting_arcs, most_crossings
   use bodies, only: bodies_of_nodes, elements_at_middles
@@ -13,7 +12,7 @@ module own_crossings
   use fields, only: displacement_field
   use kinds, only: wp
   use law_api, only: contact_open
-  use offset_parabolas, only: offset_parabola_t, point_at, tangent_at
+  use offset_parabolas, only: offset_parabola_t, point_at
   use plane_vectors, only: cross
   use scene, only: is_solid, role_contact, scene_t
   use shape_functions, only: quad8_side
@@ -41,14 +40,7 @@ module own_crossings
     real(wp) :: point(2) = 0.0_wp   !! [length]
     !> The body was between the sides, not a gap.
     logical :: thinned = .false.
-    !> The sides are neighbours in the ground of a notch that has closed.
-    logical :: in_ground = .false.
   end type own_crossing_t
-
-  !> Crossings of neighbours within this parent coordinate of their common node are that node [-].
-  real(wp), parameter :: at_node = 0.05_wp
-  !> A right angle [rad].
-  real(wp), parameter :: quarter = 0.5_wp*acos(-1.0_wp)
 
 contains
 
@@ -108,17 +100,13 @@ contains
     do m = 1, size(pairs, 2)
       associate (i => pairs(1, m), k => pairs(2, m))
         if (sides%body(k) /= sides%body(i)) cycle
-        if (are_neighbours(sides%nodes(:, i), sides%nodes(:, k))) then
-          if (.not. crossing%in_ground) call look_at_ground(pairs(:, m))
-          cycle
-        end if
+        if (are_neighbours(sides%nodes(:, i), sides%nodes(:, k))) cycle
         call crossings_between(arcs(i), arcs(k), number, xi)
         do r = 1, number
           if (.not. allocated(held)) held = nodes_in_contact(scene, solution)
           if (any(held(sides%nodes(:, i))) .or. any(held(sides%nodes(:, k)))) cycle
           if (is_small(sides%nodes, arcs, [i, k], xi(:, r)) .or. is_small(sides%nodes, arcs, [k, i], xi([2, 1], r))) cycle
           crossing%found = .true.
-          crossing%in_ground = .false.
           crossing%group = sides%group(i)
           crossing%point = point_at(arcs(i), xi(1, r))
           do s = 1, 2
@@ -129,59 +117,19 @@ contains
         end do
       end associate
     end do
-
-  contains
-
-    !> Two neighbours: where the contour turned back at their common node as the step began, as in the ground of a notch, and they
-    !> lie on one another at its end, the notch has closed there.
-    subroutine look_at_ground(pair)
-      integer, intent(in) :: pair(2)   !! sides
-      type(offset_parabola_t) :: start(2)
-      integer :: one, two, q
-
-      one = pair(1)
-      two = pair(2)
-      if (sides%nodes(3, one) /= sides%nodes(1, two)) then
-        one = pair(2)
-        two = pair(1)
-      end if
-      if (sides%nodes(3, one) /= sides%nodes(1, two)) return
-      start(1)%points = present_nodes(scene, dofs, solution, 0*du, sides%nodes(:, one))
-      start(2)%points = present_nodes(scene, dofs, solution, 0*du, sides%nodes(:, two))
-      if (.not. turn_between(start(1), start(2)) < 0) return
-      crossing%in_ground = turn_between(start(1), start(2)) < -quarter .and. turn_between(arcs(one), arcs(two)) > quarter
-      call crossings_between(arcs(one), arcs(two), number, xi)
-      do q = 1, number
-        crossing%in_ground = crossing%in_ground .or. xi(1, q) < 1 - at_node .or. xi(2, q) > at_node - 1
-      end do
-      if (.not. crossing%in_ground) return
-      if (.not. allocated(held)) held = nodes_in_contact(scene, solution)
-      crossing%in_ground = .not. (any(held(sides%nodes(:, one))) .or. any(held(sides%nodes(:, two))))
-      crossing%group = sides%group(one)
-      crossing%point = arcs(one)%points(:, 3)
-    end subroutine look_at_ground
-
   end subroutine find_own_crossing
 
-  !> Angle by which the contour turns to the left from the end of a side to the beginning of the next [rad].
-  pure function turn_between(one, two) result(angle)
-    type(offset_parabola_t), intent(in) :: one, two
-    real(wp) :: angle
-
-    associate (a => tangent_at(one, 1.0_wp), b => tangent_at(two, -1.0_wp))
-      angle = atan2(cross(a, b), dot_product(a, b))
-    end associate
-  end function turn_between
-
-  !> The place on the second side is behind the one on the first, on the side of the body.
+  !> Each of the places is behind the side of the other, where the body is: a corner that passes a side is behind one alone.
   pure function is_behind(arcs, xi) result(yes)
     type(offset_parabola_t), intent(in) :: arcs(2)   !! walked with the body on the left
     real(wp), intent(in) :: xi(2)
     logical :: yes
 
-    associate (along => arcs(1)%points(:, 3) - arcs(1)%points(:, 1))
-      yes = cross(along, point_at(arcs(2), xi(2)) - point_at(arcs(1), xi(1))) > 0
-    end associate
+    real(wp) :: way(2)
+
+    way = point_at(arcs(2), xi(2)) - point_at(arcs(1), xi(1))
+    yes = cross(arcs(1)%points(:, 3) - arcs(1)%points(:, 1), way) > 0 .and. &
+          cross(arcs(2)%points(:, 3) - arcs(2)%points(:, 1), -way) > 0
   end function is_behind
 
   !> Nodes of a side at the end of the step [length].

@@ -10,7 +10,6 @@ module step_solves
   use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
   use fields, only: displacement_field
   use first_step_parts, only: solve_motion
-  use folding_bodies, only: law_of_folds
   use heat_in_system, only: estimate_heat_in_system
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
@@ -73,8 +72,6 @@ contains
     call equations%timers%start(timer)
     call find_own_crossing(scene, equations%dofs, solution, outcome%du, equations%free_sides, crossing)
     call equations%timers%stop(timer)
-    ! the mesh of a deck without REMSH may be distorted there
-    if (crossing%in_ground .and. scene%remesh%on) crossing%found = law_of_folds(scene, equations%laws, crossing%group) > 0
     if (.not. crossing%found) return
     outcome%converged = .false.
     outcome%passes_itself = .true.
