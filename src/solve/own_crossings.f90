@@ -119,17 +119,15 @@ contains
     end do
   end subroutine find_own_crossing
 
-  !> Each of the places is behind the side of the other, where the body is: a corner that passes a side is behind one alone.
+  !> The place on the second side is behind the one on the first, on the side of the body.
   pure function is_behind(arcs, xi) result(yes)
     type(offset_parabola_t), intent(in) :: arcs(2)   !! walked with the body on the left
     real(wp), intent(in) :: xi(2)
     logical :: yes
 
-    real(wp) :: way(2)
-
-    way = point_at(arcs(2), xi(2)) - point_at(arcs(1), xi(1))
-    yes = cross(arcs(1)%points(:, 3) - arcs(1)%points(:, 1), way) > 0 .and. &
-          cross(arcs(2)%points(:, 3) - arcs(2)%points(:, 1), -way) > 0
+    associate (along => arcs(1)%points(:, 3) - arcs(1)%points(:, 1))
+      yes = cross(along, point_at(arcs(2), xi(2)) - point_at(arcs(1), xi(1))) > 0
+    end associate
   end function is_behind
 
   !> Nodes of a side at the end of the step [length].
