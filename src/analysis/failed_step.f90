@@ -42,7 +42,11 @@ contains
     logical :: give_up, on_probation, softer
 
     ! in the first of steps that are cut back the sides are far enough apart to tell whether the body is between them
-    if (cutbacks == 0) run%thins_out = outcome%thins_out
+    if (cutbacks == 0) then
+      run%thins_out = outcome%thins_out
+      run%crossings = 0
+    end if
+    run%crossings = merge(run%crossings + 1, 0, outcome%passes_itself)
     on_probation = is_on_probation(solution%probation)
     unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
@@ -87,14 +91,14 @@ contains
     end if
   end subroutine answer_failure
 
-  !> A body passes through itself, and its sides can have contact with one another.
+  !> A body passes through itself in one attempt after the other, and its sides can have contact with one another.
   pure function sides_have_met(scene, outcome, run) result(yes)
     type(scene_t), intent(in) :: scene
     type(outcome_t), intent(in) :: outcome
     type(run_t), intent(in) :: run
     logical :: yes
 
-    yes = outcome%passes_itself .and. .not. run%thins_out
+    yes = run%crossings > most_cutbacks_for_crossing .and. .not. (run%thins_out .or. outcome%thins_out)
     if (yes) yes = law_of_folds(scene, run%equations%laws, outcome%crossing_group) > 0
   end function sides_have_met
 

@@ -61,6 +61,8 @@ module run_record
     integer :: folding = 0
     !> The first of the attempts at the present step had a body that has thinned to nothing.
     logical :: thins_out = .false.
+    !> Attempts at it, one after the other, in which a body passed through itself.
+    integer :: crossings = 0
     character(len=:), allocatable :: folds
     !> Of a deck with ACCURACY, but for its pilots.
     type(accuracy_plan_t), allocatable :: plan
