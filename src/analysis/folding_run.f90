@@ -9,10 +9,10 @@ module folding_run
   use errors, only: error_t, exit_no_convergence, fail
   use exchange, only: write_checkpoint
   use next_operation, only: remesh_of
-  use own_contact, only: list_folding, passes_itself_advice, passes_itself_words
+  use own_contact, only: first_group, list_folding, passes_itself_advice, passes_itself_words
   use remesh, only: remesh_t
   use run_record, only: ends_now, run_t
-  use scene, only: is_solid, scene_t
+  use scene, only: scene_t
   use solution, only: solution_t
   use text, only: add_text
   implicit none
@@ -34,11 +34,14 @@ contains
     type(remesh_t) :: remesh
     type(scene_t) :: next
     type(solution_t) :: after
-    integer :: operation
+    integer :: operation, first
 
     operation = max(scene%operation, 1)
     call list_folding(scene, operations%folding)
-    call add_text(operations%folding, first_name(scene, folding))
+    associate (body => bodies_of_nodes(scene))
+      first = first_group(scene, body, body(scene%groups(folding)%connectivity(1, 1)))
+    end associate
+    call add_text(operations%folding, scene%groups(first)%name)
     if (scene%generation == operation) then
       ! no mesh but the deck's own so far
       call read_operation(deck, operations, operation, next, diagnostics)
@@ -56,20 +59,5 @@ contains
     call write_checkpoint(run%stem//'.ckp.h5', run%deck_path, run%deck_text, next, after, ends_now(next, after), error, &
                           between_saves=.true.)
   end subroutine save_with_contact
-
-  !> Name of the first group of the body that a group belongs to.
-  pure function first_name(scene, g) result(name)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g
-    character(len=:), allocatable :: name
-    integer :: body(size(scene%mesh%coordinates, 2)), k
-
-    body = bodies_of_nodes(scene)
-    name = scene%groups(g)%name
-    do k = g - 1, 1, -1
-      if (.not. is_solid(scene%groups(k)) .or. size(scene%groups(k)%connectivity, 2) == 0) cycle
-      if (body(scene%groups(k)%connectivity(1, 1)) == body(scene%groups(g)%connectivity(1, 1))) name = scene%groups(k)%name
-    end do
-  end function first_name
 
 end module folding_run

@@ -9,7 +9,7 @@ module own_contact
   use text, only: add_text, string_t
   implicit none
   private
-  public :: faces_itself, group_named, list_folding, passes_itself_advice, passes_itself_words, pieces_to_meet
+  public :: faces_itself, first_group, group_named, list_folding, passes_itself_advice, passes_itself_words, pieces_to_meet
   public :: thins_out_advice, thins_out_words
 
   !> Why a run ends whose body passes through itself where no contact is asked for, and what it needs.
@@ -65,31 +65,27 @@ contains
     if (.not. any(scene%dies%unasked)) return
     body = bodies_of_nodes(scene)
     do g = 1, size(scene%groups)
-      if (.not. is_solid(scene%groups(g)) .or. size(scene%groups(g)%connectivity, 2) == 0) cycle
       do d = 1, size(scene%dies)
         if (.not. scene%dies(d)%unasked) cycle
-        if (body(scene%dies(d)%nodes(1, 1)) /= body(scene%groups(g)%connectivity(1, 1))) cycle
-        if (.not. is_listed(scene, body, names, body(scene%groups(g)%connectivity(1, 1)))) &
-          call add_text(names, scene%groups(g)%name)
+        if (first_group(scene, body, body(scene%dies(d)%nodes(1, 1))) == g) exit
       end do
+      if (d <= size(scene%dies)) call add_text(names, scene%groups(g)%name)
     end do
   end subroutine list_folding
 
-  !> A group of one of the names belongs to a body.
-  pure function is_listed(scene, body, names, b) result(yes)
+  !> The first group of elements of a body, 0 where there is none.
+  pure function first_group(scene, body, b) result(g)
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: body(:)            !! (nnode) of every node
-    type(string_t), intent(in) :: names(:)    !! (n)
+    integer, intent(in) :: body(:)   !! (nnode) the body of every node
     integer, intent(in) :: b
-    logical :: yes
-    integer :: g, k
+    integer :: g
 
-    yes = .false.
-    do k = 1, size(names)
-      g = group_named(scene, names(k)%s)
-      if (g > 0) yes = yes .or. body(scene%groups(g)%connectivity(1, 1)) == b
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g)) .or. size(scene%groups(g)%connectivity, 2) == 0) cycle
+      if (body(scene%groups(g)%connectivity(1, 1)) == b) return
     end do
-  end function is_listed
+    g = 0
+  end function first_group
 
   !> The group of elements of a name, 0 where there is none, or it has no elements.
   pure function group_named(scene, name) result(g)

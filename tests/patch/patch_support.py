@@ -125,6 +125,27 @@ class Run:
 STRESS = ("stress_xx", "stress_yy", "stress_xy", "stress_zz")
 
 
+# Nodes of the sides of an element, its first, middle and last.
+SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
+
+
+def least_place(run, component=0):
+    """Least coordinate, x or y, over the sides of the boundary at all saved instants, each by the chord of its side at the start."""
+    first, nodes = run.mesh()
+    sharing = np.bincount(nodes[:, 4:].ravel(), minlength=len(first))
+    sides = np.concatenate([nodes[:, side] for side in SIDES])
+    sides = sides[sharing[sides[:, 1]] == 1]
+    chord = np.linalg.norm(first[sides[:, 2]] - first[sides[:, 0]], axis=1)
+    xi = np.linspace(-1, 1, 201)
+    phi = np.array([xi*(xi - 1)/2, 1 - xi**2, xi*(xi + 1)/2])
+    least = np.inf
+    with run.open() as file:
+        for step in sorted(file["steps"]):
+            now = (first + file[f"steps/{step}/node/displacement"][()][:, :2])[:, component]
+            least = min(least, ((now[sides] @ phi).min(axis=1)/chord).min())
+    return least
+
+
 def as_text(word):
     """Text of an HDF5 string, fixed or not."""
     if isinstance(word, np.ndarray):

@@ -15,7 +15,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
-from patch_support import BIN, LAGAMINE, SOURCE, Checks, Run, np  # noqa: E402
+from patch_support import BIN, LAGAMINE, SOURCE, Checks, Run, least_place, np  # noqa: E402
 import json  # noqa: E402
 
 DEPTH, DRIFT = 1e-3, 1e-5
@@ -79,29 +79,11 @@ PROBE tip NODE Y 0. 12.
 SAVE 20
 END
 """
-SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
 
 
 def ring(checks, name, numbers, divisions):
     """A run of the deck."""
     return Run(checks, name, RING.format(nx=divisions[0], ny=divisions[1], **numbers))
-
-
-def lowest(run):
-    """Lowest radius over the sides of the boundary at all saved instants, each by the chord of its side at the start."""
-    first, nodes = run.mesh()
-    sharing = np.bincount(nodes[:, 4:].ravel(), minlength=len(first))
-    sides = np.concatenate([nodes[:, side] for side in SIDES])
-    sides = sides[sharing[sides[:, 1]] == 1]
-    chord = np.linalg.norm(first[sides[:, 2]] - first[sides[:, 0]], axis=1)
-    xi = np.linspace(-1, 1, 201)
-    phi = np.array([xi*(xi - 1)/2, 1 - xi**2, xi*(xi + 1)/2])
-    least = np.inf
-    with run.open() as file:
-        for step in sorted(file["steps"]):
-            radius = (first + file[f"steps/{step}/node/displacement"][()][:, :2])[:, 0]
-            least = min(least, ((radius[sides] @ phi).min(axis=1)/chord).min())
-    return least
 
 
 def volume(x, nodes):
@@ -137,7 +119,7 @@ def closed_bores(checks):
         run = ring(checks, name, numbers, divisions)
         if not run.ok:
             continue
-        least = lowest(run)
+        least = least_place(run)
         with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
             drift = abs(json.load(file)["checks"]["volume_drift_unloaded"])
         first, nodes = run.mesh()
@@ -165,7 +147,7 @@ def closed_form(checks):
     checks.that(plastic.sum() > 3, "ring: steps between the bounds", plastic.sum())
     checks.small(np.abs(pressure/expected - 1)[plastic].max(), 0.01, "ring: pressure against the closed form")
     checks.small(np.abs(outer**2 - bore**2 - 24)[plastic].max()/24, 1e-3, "ring: volume against the closed form")
-    checks.that(lowest(run) >= -DEPTH, "ring: nothing crosses the axis")
+    checks.that(least_place(run) >= -DEPTH, "ring: nothing crosses the axis")
 
 
 def die_on_the_axis(checks):
@@ -174,7 +156,7 @@ def die_on_the_axis(checks):
     if all(run.ok for run in runs):
         force = [run.history["force"][-1] for run in runs]
         checks.small(abs(force[1]/force[0] - 1), 1e-3, "die on the axis: force")
-        checks.that(lowest(runs[1]) >= -DEPTH, "die on the axis: nothing crosses it")
+        checks.that(least_place(runs[1]) >= -DEPTH, "die on the axis: nothing crosses it")
 
 
 def billet_without_support(checks):

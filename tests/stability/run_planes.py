@@ -15,7 +15,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "patch"))
-from patch_support import LAGAMINE, Checks, Run, np  # noqa: E402
+from patch_support import LAGAMINE, SIDES, Checks, Run, least_place, np  # noqa: E402
 
 DEPTH, SAME = 1e-3, 1e-2
 METAL = """LAW    metal EPLA
@@ -99,7 +99,6 @@ LEFT = """DIE    left
    SEGM   0. 10*{length}   0. -1*{length}
 """
 STEEL = {"young": 200000.0, "flow": "300. 300.", "mu": 0.1, "option": "", "more": "", "n": 6, "m": 6}
-SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))
 # Name, deck, numbers, sides that reach the plane, components of the planes they reach.
 CASES = [("pore", PORE, {"unit": 1, "travel": 3.5}, ("right 4", "top 4"), (0, 1)),
          ("pore-coarse", PORE, {"unit": 1, "travel": 3.5, "n": 4, "m": 4}, ("right 4", "top 4"), (0, 1)),
@@ -129,20 +128,7 @@ def with_dies(numbers, sides, components):
 
 def deepest(run, components):
     """Deepest place of sides behind the planes at all saved instants, over the chord of the side at the start."""
-    first, nodes = run.mesh()
-    sharing = np.bincount(nodes[:, 4:].ravel(), minlength=len(first))
-    sides = np.concatenate([nodes[:, side] for side in SIDES])
-    sides = sides[sharing[sides[:, 1]] == 1]
-    chord = np.linalg.norm(first[sides[:, 2]] - first[sides[:, 0]], axis=1)
-    xi = np.linspace(-1, 1, 201)
-    phi = np.array([xi*(xi - 1)/2, 1 - xi**2, xi*(xi + 1)/2])
-    least = np.inf
-    with run.open() as file:
-        for step in sorted(file["steps"]):
-            now = first + file[f"steps/{step}/node/displacement"][()][:, :2]
-            for c in components:
-                least = min(least, ((now[:, c][sides] @ phi).min(axis=1)/chord).min())
-    return -least
+    return -min(least_place(run, c) for c in components)
 
 
 def folds(checks):
