@@ -1,7 +1,8 @@
 !> Small laps of a free contour: loops no longer than an element or two, where a crevice has closed over its ground or a short side
 !> has turned over.
 !>
-!> Such a contour crosses itself, and no mesh resolves what is in the loop. It is cut off where the contour crosses itself: the
+!> Such a contour crosses itself, and no mesh resolves what is in the loop, nor does the old mesh what is between two sides of it that
+!> follow one another. It is cut off where the contour crosses itself: the
 !> matter has met there, and the contour goes on from one flank to the other. The volume is restored with that of the contacts.
 module small_laps
   use arc_crossings, only: crossings_between, extent, most_crossings, touching
@@ -57,7 +58,7 @@ contains
       if (.not. is_free(boundary%arcs(i))) cycle
       between = 0
       k = mod(i, size(boundary%arcs)) + 1
-      do while (k /= i .and. between <= longest)
+      do while (k /= i .and. (between <= longest .or. follow(i, k)))
         if (.not. is_free(boundary%arcs(k))) exit
         if (.not. same_tags(tags, boundary%arcs(i)%side, boundary%arcs(k)%side)) exit
         associate (one => boundary%arcs(i), two => boundary%arcs(k))
@@ -69,7 +70,7 @@ contains
                 <= touching*max(extent(one), extent(two))) cycle
             length = length_between(one, xi(1, c), one%range(2)) + between + length_between(two, two%range(1), xi(2, c))
             ! the outermost of loops within each other
-            if (length > longest .or. length < lap%length) cycle
+            if ((length > longest .and. .not. follow(i, k)) .or. length < lap%length) cycle
             lap = loop_of_lap_t(i, k, xi(:, c), length, point)
           end do
           between = between + length_between(two, two%range(1), two%range(2))
@@ -78,6 +79,17 @@ contains
       end do
       if (lap%first > 0) return
     end do
+
+  contains
+
+    !> Arcs of one side, or of two of the old mesh that follow one another.
+    pure function follow(one, next)
+      integer, intent(in) :: one, next
+      logical :: follow
+
+      follow = modulo(boundary%arcs(next)%side - boundary%arcs(one)%side, size(tags%on_wall)) <= 1
+    end function follow
+
   end subroutine find_loop
 
   pure subroutine cut_off(lap, contacts, boundary, laps)

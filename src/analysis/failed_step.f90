@@ -1,10 +1,12 @@
 !> What is done about a step that has failed: a shorter one, damping, a new mesh, or the end of the run.
 module failed_step
-  use acceptance, only: is_on_probation, note_cutback
+  use acceptance, only: forget_cutbacks, is_on_probation, note_cutback
+  use crossing_record, only: crossing_record_t
   use damping, only: begin_damping, strengthen_damping
   use errors, only: error_t
   use folding_bodies, only: law_of_folds
   use kinds, only: wp
+  use law_api, only: law_t
   use listing, only: list_cutback, list_note, list_softer_contact
   use probation, only: is_too_short, pass_probation, refuse_after_all
   use run_record, only: run_t, save_all
@@ -23,8 +25,10 @@ module failed_step
 
   !> So many cutbacks in a row are not answered by damping; damped, a step of the least length is tried until there were so many.
   integer, parameter :: most_cutbacks_undamped = 2, most_cutbacks_damped = 12
-  !> So many cutbacks in a row show that a body passes through itself in steps of any length.
+  !> So many cutbacks in a row show that a body passes through itself in steps of any length. Its sides have met where it does so in a
+  !> step that is this much shorter than the first one that did, before the end of that one.
   integer, parameter :: most_cutbacks_for_crossing = 3
+  real(wp), parameter :: much_shorter = 0.5_wp**most_cutbacks_for_crossing
 
 contains
 
@@ -39,14 +43,11 @@ contains
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
     type(unheld_die_t) :: unheld
-    logical :: give_up, on_probation, softer
+    logical :: give_up, on_probation, softer, folds
 
-    ! in the first of steps that are cut back the sides are far enough apart to tell whether the body is between them
-    if (cutbacks == 0) then
-      run%thins_out = outcome%thins_out
-      run%crossings = 0
-    end if
-    run%crossings = merge(run%crossings + 1, 0, outcome%passes_itself)
+    ! in the first of steps that do so the sides are far enough apart to tell whether the body is between them
+    if (outcome%passes_itself .and. .not. solution%time < solution%crossing%until) &
+      solution%crossing = crossing_record_t(dt, solution%time + dt, outcome%thins_out)
     on_probation = is_on_probation(solution%probation)
     unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
@@ -71,8 +72,11 @@ contains
       end if
     end if
     if (outcome%passes_itself) give_up = give_up .or. cutbacks > most_cutbacks_for_crossing
+    folds = sides_have_met(scene, run%equations%laws, dt, outcome, solution%crossing)
+    give_up = give_up .or. folds
     call note_cutback(solution%probation, solution%next_step)
-    if (on_probation .and. is_too_short(scene, solution)) then
+    ! another mesh has the same sides
+    if (on_probation .and. is_too_short(scene, solution) .and. .not. folds) then
       call refuse_mesh(scene, solution, outcome, run, error)
       return
     end if
@@ -80,7 +84,11 @@ contains
     if (mesh_is_due(solution)) then
       if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
       if (.not. allocated(error)) call save_all(scene, solution, run, error)
-    else if (give_up .and. sides_have_met(scene, outcome, run)) then
+    else if (folds) then
+      ! lengths of steps that passed through say nothing of those with contact, nor of the mesh
+      solution%next_step = solution%crossing%length
+      solution%crossing = crossing_record_t()
+      call forget_cutbacks(solution%probation)
       run%folding = outcome%crossing_group
       run%folds = scene%groups(outcome%crossing_group)%name//' passes through itself'//outcome%crossing_place
     else if (give_up) then
@@ -91,15 +99,17 @@ contains
     end if
   end subroutine answer_failure
 
-  !> A body passes through itself in one attempt after the other, and its sides can have contact with one another.
-  pure function sides_have_met(scene, outcome, run) result(yes)
+  !> A body passes through itself in steps much shorter than the first that did, and its sides can have contact with one another.
+  pure function sides_have_met(scene, laws, dt, outcome, crossing) result(yes)
     type(scene_t), intent(in) :: scene
+    type(law_t), intent(in) :: laws(:)
+    real(wp), intent(in) :: dt   !! of the step that has failed [time]
     type(outcome_t), intent(in) :: outcome
-    type(run_t), intent(in) :: run
+    type(crossing_record_t), intent(in) :: crossing
     logical :: yes
 
-    yes = run%crossings > most_cutbacks_for_crossing .and. .not. (run%thins_out .or. outcome%thins_out)
-    if (yes) yes = law_of_folds(scene, run%equations%laws, outcome%crossing_group) > 0
+    yes = outcome%passes_itself .and. .not. (crossing%thinned .or. outcome%thins_out) .and. dt <= much_shorter*crossing%length
+    if (yes) yes = law_of_folds(scene, laws, outcome%crossing_group) > 0
   end function sides_have_met
 
   !> The step is tried again with more damping than before, where a die withdraws, or past a limit point.

@@ -59,10 +59,6 @@ module run_record
     integer :: damped_from = 0
     !> A group of the body whose sides have met, where no card gives them contact, and why it is known; 0 where none have.
     integer :: folding = 0
-    !> The first of the attempts at the present step had a body that has thinned to nothing.
-    logical :: thins_out = .false.
-    !> Attempts at it, one after the other, in which a body passed through itself.
-    integer :: crossings = 0
     character(len=:), allocatable :: folds
     !> Of a deck with ACCURACY, but for its pilots.
     type(accuracy_plan_t), allocatable :: plan

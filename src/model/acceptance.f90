@@ -5,7 +5,8 @@ module acceptance
   implicit none
   private
   public :: acceptance_t, probation_t
-  public :: begin_probation, end_probation, is_first_step, is_on_probation, note_cutback, note_step, probation_steps, step_ratio
+  public :: begin_probation, end_probation, forget_cutbacks, is_first_step, is_on_probation, note_cutback, note_step
+  public :: probation_steps, step_ratio
 
   !> Steps after a remesh that are compared with as many before it.
   integer, parameter :: probation_steps = 5
@@ -75,6 +76,13 @@ contains
 
     if (probation%left > 0) probation%least = min(probation%least, length)
   end subroutine note_cutback
+
+  !> Contact has been added that steps failed without: their lengths say nothing of the mesh.
+  pure subroutine forget_cutbacks(probation)
+    type(probation_t), intent(inout) :: probation
+
+    probation%least = huge(1.0_wp)
+  end subroutine forget_cutbacks
 
   pure subroutine end_probation(probation)
     type(probation_t), intent(inout) :: probation

@@ -73,6 +73,7 @@ contains
     after%last_step = 0
     after%older_step = 0
     after%probation = fresh%probation
+    after%crossing = fresh%crossing
     after%sunk_group = 0
     after%sunk_depth = 0
     after%sunk_share = 0

@@ -7,6 +7,7 @@ module solution
   use heat_record, only: heat_record_t
   use kinds, only: wp
   use loads, only: multiplier_at, start_t
+  use crossing_record, only: crossing_record_t
   use narrow_record, only: narrow_record_t
   use pairs, only: pairs_t, start_pairs
   use path_record, only: path_record_t, start_path
@@ -49,6 +50,8 @@ module solution
     logical :: between_saves = .false.
     !> Lengths of late steps, and of those of a mesh that is new.
     type(probation_t) :: probation
+    !> The last step of a body through itself.
+    type(crossing_record_t) :: crossing
     !> Share of the penalties that follow from an allowed penetration with which contact presses: less than 1 where it bears little
     !> and could not be found with the whole, more where an elastic body bears much (soft_penalties) [-].
     real(wp) :: penalty_share = 1.0_wp

@@ -2,6 +2,7 @@
 module visit_solution
   use acceptance, only: probation_steps, probation_t
   use confinement_record, only: confinement_record_t
+  use crossing_record, only: crossing_record_t
   use heat_record, only: heat_record_t
   use kinds, only: wp
   use narrow_record, only: narrow_record_t
@@ -87,6 +88,9 @@ contains
     call visitor%enter('probation')
     call visit_probation(visitor, self%probation)
     call visitor%leave('probation')
+    call visitor%enter('crossing')
+    call visit_crossing(visitor, self%crossing)
+    call visitor%leave('crossing')
     call visitor%enter('estimate')
     call visit_estimate_members(visitor, self%estimate)
     call visitor%leave('estimate')
@@ -197,6 +201,15 @@ contains
     call visitor%member('before', self%before, kept, 'time', low=0.0_wp)
     call visitor%member('least', self%least, kept, 'time', low=0.0_wp)
   end subroutine visit_probation
+
+  subroutine visit_crossing(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(crossing_record_t), intent(inout) :: self
+
+    call visitor%member('length', self%length, kept, 'time', low=0.0_wp)
+    call visitor%member('until', self%until, kept, 'time', low=0.0_wp)
+    call visitor%member('thinned', self%thinned, kept)
+  end subroutine visit_crossing
 
   subroutine visit_group_state(visitor, self)
     class(visitor_t), intent(inout) :: visitor
