@@ -1,8 +1,8 @@
 !> Small laps of a free contour: loops no longer than an element or two, where a crevice has closed over its ground or a short side
 !> has turned over.
 !>
-!> Such a contour crosses itself, and no mesh resolves what is in the loop, nor does the old mesh what is between two sides of it that
-!> follow one another. It is cut off where the contour crosses itself: the
+!> Such a contour crosses itself, and no mesh resolves what is in the loop, nor does the old mesh what is between two sides of it
+!> that follow one another. It is cut off where the contour crosses itself: the
 !> matter has met there, and the contour goes on from one flank to the other. The volume is restored with that of the contacts.
 module small_laps
   use arc_crossings, only: crossings_between, extent, most_crossings, touching

@@ -25,8 +25,8 @@ module failed_step
 
   !> So many cutbacks in a row are not answered by damping; damped, a step of the least length is tried until there were so many.
   integer, parameter :: most_cutbacks_undamped = 2, most_cutbacks_damped = 12
-  !> So many cutbacks in a row show that a body passes through itself in steps of any length. Its sides have met where it does so in a
-  !> step that is this much shorter than the first one that did, before the end of that one.
+  !> So many cutbacks in a row show that a body passes through itself in steps of any length. Its sides have met where it does so
+  !> in a step that is this much shorter than the first one that did, before the end of that one.
   integer, parameter :: most_cutbacks_for_crossing = 3
   real(wp), parameter :: much_shorter = 0.5_wp**most_cutbacks_for_crossing
 

@@ -6,6 +6,7 @@ module supports
   use kinds, only: wp
   use resting_dies, only: has_spring
   use scene, only: axisymmetric, group_t, is_solid, role_side_load, role_volume_load, scene_t
+  use scene_effects, only: has_effect
   use text, only: string_t
   implicit none
   private
@@ -14,11 +15,13 @@ module supports
   character(len=*), parameter :: directions = 'XY'
   !> A die presses along a direction, and does not hold across it by friction, where its pushes have at least this component.
   real(wp), parameter :: least_component = sqrt(0.5_wp)
+  !> Dies push across a direction alone where no push has this component: that of round-off in their rows.
+  real(wp), parameter :: no_component = 1.0e-6_wp
 
 contains
 
   !> A warning for each body, with all it is joined to, and each direction in which nothing holds it: no support, and no contact,
-  !> none that touches at the start, or dies that press it from one side alone. In the plane also for a turn about the only point
+  !> none that touches at the start, dies that press it from one side alone, or across it and without friction. In the plane also for a turn about the only point
   !> that is held.
   subroutine free_motions(scene, outlook, warnings)
     type(scene_t), intent(in) :: scene
@@ -44,6 +47,9 @@ contains
             else if (pressed_from_one_side(scene, outlook, part, own, c)) then
               call add(group%name//': dies press it along '//directions(c:c)//' from one side, and nothing holds it on the ' &
                        //'other, no support and no contact: they would push it ahead of them')
+            else if (pressed_across(scene, outlook, part, own, c)) then
+              call add(group%name//': nothing says where it is along '//directions(c:c)//', no support, and all dies that face ' &
+                       //'it press it across that and without friction: a support, a SPRNG card, or friction does')
             end if
           else if (near) then
             call add(group%name//': nothing holds it in '//directions(c:c)//' before it meets a die: contact alone does, and ' &
@@ -170,6 +176,31 @@ contains
     if (any(part(scene%forces%node) == own)) return
     yes = driven .and. (least >= least_component .or. largest <= -least_component)
   end function pressed_from_one_side
+
+  !> Rigid dies face the part at the start, none would push it along a direction, and no contact law has friction.
+  pure function pressed_across(scene, outlook, part, own, component) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(outlook_t), intent(in) :: outlook(:)
+    integer, intent(in) :: part(:), own, component
+    logical :: yes
+    integer :: g
+
+    yes = .false.
+    if (has_effect(scene, 'friction')) return
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        if (group%die == 0 .or. group%material == 0 .or. size(group%connectivity) == 0) cycle
+        if (is_deformable(scene%dies(group%die))) then
+          ! another body, which may hold it
+          yes = .false.
+          return
+        end if
+        if (part(group%connectivity(1, 1)) /= own) cycle
+        yes = max(outlook(g)%largest_push(component), -outlook(g)%least_push(component)) <= no_component
+        if (.not. yes) return
+      end associate
+    end do
+  end function pressed_across
 
   !> Rigid dies face the part, and all of them are free in a direction, without a spring: they and the part move in it as one.
   pure function floats_with_dies(scene, part, own, component) result(yes)

@@ -13,7 +13,7 @@ module scene_effects
   use text, only: to_text
   implicit none
   private
-  public :: list_effects
+  public :: has_effect, list_effects
 
   !> Effects in the order of the summary, with the reason why each is off where no card needs it.
   character(len=*), parameter :: names(13) = [character(len=15) :: 'displacement', 'large strain', 'plasticity', 'contact', &
@@ -54,7 +54,7 @@ contains
       k = scene%groups(g)%material
       if (k > 0) call add_effects_of_law(deck, diagnostics, laws(scene%materials(k)%law_id), k, scene)
     end do
-    scene%follows_path = is_on(scene, 'plasticity') .and. (scene%strategy%path_bound > 0 .or. scene%strategy%rate_bound > 0)
+    scene%follows_path = has_effect(scene, 'plasticity') .and. (scene%strategy%path_bound > 0 .or. scene%strategy%rate_bound > 0)
     do k = 1, size(scene%effects)
       if (.not. scene%effects(k)%on) scene%effects(k)%adds = 'nothing'
     end do
@@ -82,13 +82,13 @@ contains
     place = findloc(names == name, .true., 1)
   end function place_of
 
-  pure function is_on(scene, name) result(on)
+  pure function has_effect(scene, name) result(on)
     type(scene_t), intent(in) :: scene
     character(len=*), intent(in) :: name
     logical :: on
 
     on = scene%effects(place_of(name))%on
-  end function is_on
+  end function has_effect
 
   !> The first card that needs an effect is the one named.
   subroutine switch_on(deck, diagnostics, scene, name, keyword, first_field, adds)
@@ -98,7 +98,7 @@ contains
     character(len=*), intent(in) :: name                        !! of the effect
     character(len=*), intent(in) :: keyword, first_field, adds  !! of the card; what the effect adds to a run
 
-    if (is_on(scene, name)) return
+    if (has_effect(scene, name)) return
     associate (effect => scene%effects(place_of(name)))
       effect%on = .true.
       effect%why = card_text(deck, diagnostics, scene%groups(1)%elem, keyword, first_field)
@@ -158,7 +158,7 @@ contains
     if (.not. asks_for(law, 'friction')) return
     if (has_friction(law, scene%materials(k)%values)) then
       call switch_on(deck, diagnostics, scene, 'friction', 'LAW', name, 'unsymmetric matrix, friction work')
-    else if (.not. is_on(scene, 'friction')) then
+    else if (.not. has_effect(scene, 'friction')) then
       scene%effects(place_of('friction'))%why = 'PHI and PBOUE of every contact law are 0'
     end if
   end subroutine add_effects_of_law

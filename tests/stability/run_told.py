@@ -63,6 +63,7 @@ WRONG = {
                                        "no longer faces the part"),
     "floating": ({"FIXED  billet 1 Y\n": TABLE, "30. 15.   -5. 15.": "30. 16.   -5. 16."}, "nothing holds it in Y before it meets"),
     "pushed from one side": ({"FIXED  billet 1 Y\n": ""}, "dies press it along Y from one side"),
+    "slides between dies": ({"FIXED  billet 4 X\n": "", "PHI 0.3": "PHI 0."}, "press it across that and without friction"),
     "free to slide": ({"FIXED  billet 4 X\n": "", "CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "MOVE   upper Y press\n":
                        "MOVE   billet 3 Y press\n", "   SEGM  30. 15.   -5. 15.\n": "", "LAW    rough COUL2D\n": "",
                        "   PENETR 1.E-3   PHI 0.3\n": ""}, "nothing holds it in X, no support"),
