@@ -21,8 +21,8 @@ module supports
 contains
 
   !> A warning for each body, with all it is joined to, and each direction in which nothing holds it: no support, and no contact,
-  !> none that touches at the start, dies that press it from one side alone, or across it and without friction. In the plane also for a turn about the only point
-  !> that is held.
+  !> none that touches at the start, dies that press it from one side alone, or across it without friction. In the plane also for a
+  !> turn about the only point that is held.
   subroutine free_motions(scene, outlook, warnings)
     type(scene_t), intent(in) :: scene
     type(outlook_t), intent(in) :: outlook(:)   !! (ngroup) of groups that face rigid dies
