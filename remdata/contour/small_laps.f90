@@ -2,10 +2,11 @@
 !> has turned over.
 !>
 !> Such a contour crosses itself, and no mesh resolves what is in the loop, nor does the old mesh what is between two sides of it
-!> that follow one another. It is cut off where the contour crosses itself: the
-!> matter has met there, and the contour goes on from one flank to the other. The volume is restored with that of the contacts.
+!> that follow one another. It is cut off where the contour crosses itself: the matter has met there, and the contour goes on from
+!> one flank to the other. The volume is restored with that of the contacts.
 module small_laps
   use arc_crossings, only: crossings_between, extent, most_crossings, touching
+  use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t
   use contour_contacts, only: contact_t
   use folded_sides, only: fold_t
@@ -24,6 +25,9 @@ module small_laps
     real(wp) :: xi(2) = 0.0_wp, length = 0.0_wp
     real(wp) :: point(2) = 0.0_wp   !! where the contour crosses itself [length]
   end type loop_of_lap_t
+
+  !> A crossing so near to an end, in shares of an arc, is as good as on the arc beyond it.
+  real(wp), parameter :: near_end = 0.1_wp
 
 contains
 
@@ -58,7 +62,7 @@ contains
       if (.not. is_free(boundary%arcs(i))) cycle
       between = 0
       k = mod(i, size(boundary%arcs)) + 1
-      do while (k /= i .and. (between <= longest .or. follow(i, k)))
+      do while (k /= i .and. (between <= longest .or. sides_on(i, k) <= 2))
         if (.not. is_free(boundary%arcs(k))) exit
         if (.not. same_tags(tags, boundary%arcs(i)%side, boundary%arcs(k)%side)) exit
         associate (one => boundary%arcs(i), two => boundary%arcs(k))
@@ -70,7 +74,7 @@ contains
                 <= touching*max(extent(one), extent(two))) cycle
             length = length_between(one, xi(1, c), one%range(2)) + between + length_between(two, two%range(1), xi(2, c))
             ! the outermost of loops within each other
-            if ((length > longest .and. .not. follow(i, k)) .or. length < lap%length) cycle
+            if (length < lap%length .or. (length > longest .and. .not. follow(one, two, xi(:, c), sides_on(i, k)))) cycle
             lap = loop_of_lap_t(i, k, xi(:, c), length, point)
           end do
           between = between + length_between(two, two%range(1), two%range(2))
@@ -82,15 +86,27 @@ contains
 
   contains
 
-    !> Arcs of one side, or of two of the old mesh that follow one another.
-    pure function follow(one, next)
-      integer, intent(in) :: one, next
-      logical :: follow
+    !> Sides of the old mesh from that of an arc to that of another one behind it.
+    pure function sides_on(from, to) result(number)
+      integer, intent(in) :: from, to
+      integer :: number
 
-      follow = modulo(boundary%arcs(next)%side - boundary%arcs(one)%side, size(tags%on_wall)) <= 1
-    end function follow
+      number = modulo(boundary%arcs(to)%side - boundary%arcs(from)%side, size(tags%on_wall))
+    end function sides_on
 
   end subroutine find_loop
+
+  !> Arcs of one side of the old mesh, or of two that follow one another, cross; or they would if one were a little longer.
+  pure function follow(one, two, xi, sides)
+    type(arc_t), intent(in) :: one, two
+    real(wp), intent(in) :: xi(2)
+    integer, intent(in) :: sides   !! from the one's to the other's
+    logical :: follow
+
+    follow = sides <= 1
+    if (sides == 2) follow = one%range(2) - xi(1) <= near_end*(one%range(2) - one%range(1)) .or. &
+                             xi(2) - two%range(1) <= near_end*(two%range(2) - two%range(1))
+  end function follow
 
   pure subroutine cut_off(lap, contacts, boundary, laps)
     type(loop_of_lap_t), intent(in) :: lap

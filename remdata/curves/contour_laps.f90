@@ -3,7 +3,7 @@
 !> Two bodies in contact overlap by the depth of contact: arcs that follow a deformable die may cross that die, and so may sides
 !> that face it, where contact covers too little of a side to be a contact interval.
 module contour_laps
-  use arc_crossings, only: box_of_chords, crossings_between, extent, most_crossings, touching
+  use arc_crossings, only: box_around, crossings_between, extent, most_crossings, touching
   use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t, joint_after, joint_point, kind_entry, kind_exit
   use kinds, only: wp
@@ -50,7 +50,7 @@ contains
         n = n + 1
         boundary_of(n) = c
         arc_of(n) = k
-        boxes(:, n) = box_of_chords(boundaries(c)%arcs(k))
+        boxes(:, n) = box_around(boundaries(c)%arcs(k))
       end do
     end do
     do i = 1, n

@@ -1,15 +1,17 @@
 !> Crossings of two arcs.
 !>
-!> Arcs are approximated by chords; where chords cross, the crossing of the arcs is found by Newton's method.
+!> Arcs are approximated by chords. Where chords cross, or come as near as arcs are off their chords, the crossing of the arcs is
+!> found by Newton's method.
 module arc_crossings
   use box_tree, only: box_tree_t, build_tree, items_meeting
   use kinds, only: eps, wp
   use offset_parabolas, only: offset_parabola_t, point_at, tangent_at
+  use parabolas, only: bend_of
   use plane_vectors, only: cross
   use vectors, only: length_of
   implicit none
   private
-  public :: box_of_chords, crossings_between, extent, find_meeting_arcs, most_crossings, touching
+  public :: box_around, crossings_between, extent, find_meeting_arcs, most_crossings, touching
 
   !> Chords of an arc.
   integer, parameter :: nchord = 8
@@ -20,15 +22,23 @@ module arc_crossings
 
 contains
 
-  !> Box around the points that the chords join (xmin, ymin, xmax, ymax) [length].
-  pure function box_of_chords(arc) result(box)
+  !> Box around an arc (xmin, ymin, xmax, ymax) [length].
+  pure function box_around(arc) result(box)
     class(offset_parabola_t), intent(in) :: arc
     real(wp) :: box(4)
     real(wp) :: p(2, 0:nchord)
 
     p = chord_points(arc)
-    box = [minval(p, 2), maxval(p, 2)]
-  end function box_of_chords
+    box = [minval(p, 2) - off_chords(arc), maxval(p, 2) + off_chords(arc)]
+  end function box_around
+
+  !> How far an arc is off its chords at most: an eighth of its second derivative by the square of a chord's range.
+  pure function off_chords(arc) result(distance)
+    class(offset_parabola_t), intent(in) :: arc
+    real(wp) :: distance   !! [length]
+
+    distance = length_of(bend_of(arc%points))*((arc%range(2) - arc%range(1))/nchord)**2/8
+  end function off_chords
 
   !> Pairs of arcs whose boxes meet, the lower number first, in its order.
   pure subroutine find_meeting_arcs(arcs, pairs)
@@ -40,7 +50,7 @@ contains
     integer, allocatable :: list(:, :), longer(:, :)
 
     do i = 1, size(arcs)
-      boxes(:, i) = box_of_chords(arcs(i))
+      boxes(:, i) = box_around(arcs(i))
     end do
     call build_tree(boxes, [(i, i=1, size(arcs))], tree)
     ! every arc of a contour meets its neighbours
@@ -78,20 +88,27 @@ contains
     integer, intent(out) :: n
     real(wp), intent(out) :: xi(:, :)   !! (2, most_crossings) on the one and on the other, the first n [-]
     real(wp) :: p(2, 0:nchord), q(2, 0:nchord)
+    real(wp) :: off, found(2), same(2)
     logical :: crossed
-    integer :: i, k
+    integer :: i, k, m
 
     n = 0
     p = chord_points(one)
     q = chord_points(two)
+    off = off_chords(one) + off_chords(two)
+    same = touching*[one%range(2) - one%range(1), two%range(2) - two%range(1)]
     do i = 1, nchord
       do k = 1, nchord
-        if (.not. chords_cross(p(:, i - 1:i), q(:, k - 1:k))) cycle
+        if (.not. (chords_cross(p(:, i - 1:i), q(:, k - 1:k)) .or. chords_are_near(p(:, i - 1:i), q(:, k - 1:k), off))) cycle
+        found = [one%range(1) + (one%range(2) - one%range(1))*(i - 0.5_wp)/nchord, &
+                 two%range(1) + (two%range(2) - two%range(1))*(k - 0.5_wp)/nchord]
+        call refine_crossing(one, two, found, crossed)
+        ! several chords are near one crossing
+        if (crossed) crossed = .not. any([(all(abs(xi(:, m) - found) <= same), m=1, n)])
+        if (.not. crossed) cycle
+        n = n + 1
+        xi(:, n) = found
         if (n == size(xi, 2)) return
-        xi(:, n + 1) = [one%range(1) + (one%range(2) - one%range(1))*(i - 0.5_wp)/nchord, &
-                        two%range(1) + (two%range(2) - two%range(1))*(k - 0.5_wp)/nchord]
-        call refine_crossing(one, two, xi(:, n + 1), crossed)
-        if (crossed) n = n + 1
       end do
     end do
   end subroutine crossings_between
@@ -115,6 +132,30 @@ contains
     yes = (cross(a, q(:, 1) - p(:, 1)) < 0 .neqv. cross(a, q(:, 2) - p(:, 1)) < 0) .and. &
           (cross(b, p(:, 1) - q(:, 1)) < 0 .neqv. cross(b, p(:, 2) - q(:, 1)) < 0)
   end function chords_cross
+
+  !> An end of one chord is within a distance of the other chord.
+  pure function chords_are_near(p, q, distance) result(yes)
+    real(wp), intent(in) :: p(2, 2), q(2, 2), distance   !! [length]
+    logical :: yes
+    integer :: k
+
+    yes = .false.
+    if (.not. distance > 0 .or. any(min(p(:, 1), p(:, 2)) - distance > max(q(:, 1), q(:, 2))) &
+        .or. any(min(q(:, 1), q(:, 2)) - distance > max(p(:, 1), p(:, 2)))) return
+    do k = 1, 2
+      yes = yes .or. distance_to_chord(p(:, k), q) <= distance .or. distance_to_chord(q(:, k), p) <= distance
+    end do
+  end function chords_are_near
+
+  pure function distance_to_chord(point, chord) result(distance)
+    real(wp), intent(in) :: point(2), chord(2, 2)
+    real(wp) :: distance
+    real(wp) :: along(2), share
+
+    along = chord(:, 2) - chord(:, 1)
+    share = dot_product(point - chord(:, 1), along)/max(dot_product(along, along), tiny(1.0_wp))
+    distance = length_of(point - chord(:, 1) - min(max(share, 0.0_wp), 1.0_wp)*along)
+  end function distance_to_chord
 
   !> Newton's method on X1(a) - X2(b) = 0 from where the chords cross.
   pure subroutine refine_crossing(one, two, xi, met)
