@@ -2,18 +2,18 @@
 !> has turned over.
 !>
 !> Such a contour crosses itself, and no mesh resolves what is in the loop, nor does the old mesh what is between two sides of it
-!> that follow one another. It is cut off where the contour crosses itself: the matter has met there, and the contour goes on from
-!> one flank to the other. The volume is restored with that of the contacts.
+!> with no more than one between them. It is cut off where the contour crosses itself: the matter has met there, and the contour
+!> goes on from one flank to the other. Where one set of sides ends in the loop and another begins, as at the corner of a billet
+!> that has folded, both end there. The volume is restored with that of the contacts.
 module small_laps
   use arc_crossings, only: crossings_between, extent, most_crossings, touching
-  use arcs, only: arc_t
   use boundary_curves, only: boundary_curve_t
   use contour_contacts, only: contact_t
   use folded_sides, only: fold_t
   use kinds, only: wp
   use offset_parabolas, only: length_between, point_at
   use short_free_sides, only: is_free, redrawn, remove_arcs
-  use side_tags, only: same_tags, side_tags_t
+  use side_tags, only: same_supports, same_tags, side_tags_t
   use vectors, only: length_of
   implicit none
   private
@@ -26,8 +26,8 @@ module small_laps
     real(wp) :: point(2) = 0.0_wp   !! where the contour crosses itself [length]
   end type loop_of_lap_t
 
-  !> A crossing so near to an end, in shares of an arc, is as good as on the arc beyond it.
-  real(wp), parameter :: near_end = 0.1_wp
+  !> Loops of so many sides of the old mesh between the two that cross are cut off, however long they are.
+  integer, parameter :: most_between = 1
 
 contains
 
@@ -49,22 +49,28 @@ contains
     end do
   end subroutine cut_small_laps
 
-  !> The first loop of free arcs of one set of tags; its `first` is 0 where there is none.
+  !> The first loop of free arcs of one set of tags, or of one and then another with the same supports; its `first` is 0 where
+  !> there is none.
   pure subroutine find_loop(longest, tags, boundary, lap)
     real(wp), intent(in) :: longest
     type(side_tags_t), intent(in) :: tags
     type(boundary_curve_t), intent(in) :: boundary
     type(loop_of_lap_t), intent(out) :: lap
     real(wp) :: xi(2, most_crossings), between, length, point(2)
-    integer :: i, k, n, c
+    integer :: i, k, n, c, other
 
     do i = 1, size(boundary%arcs)
       if (.not. is_free(boundary%arcs(i))) cycle
       between = 0
+      other = boundary%arcs(i)%side
       k = mod(i, size(boundary%arcs)) + 1
-      do while (k /= i .and. (between <= longest .or. sides_on(i, k) <= 2))
+      do while (k /= i .and. (between <= longest .or. sides_between(i, k) <= most_between))
         if (.not. is_free(boundary%arcs(k))) exit
-        if (.not. same_tags(tags, boundary%arcs(i)%side, boundary%arcs(k)%side)) exit
+        if (.not. same_supports(tags, boundary%arcs(i)%side, boundary%arcs(k)%side)) exit
+        if (.not. same_tags(tags, other, boundary%arcs(k)%side)) then
+          if (.not. same_tags(tags, other, boundary%arcs(i)%side)) exit
+          other = boundary%arcs(k)%side
+        end if
         associate (one => boundary%arcs(i), two => boundary%arcs(k))
           call crossings_between(one, two, n, xi)
           do c = 1, n
@@ -74,7 +80,7 @@ contains
                 <= touching*max(extent(one), extent(two))) cycle
             length = length_between(one, xi(1, c), one%range(2)) + between + length_between(two, two%range(1), xi(2, c))
             ! the outermost of loops within each other
-            if (length < lap%length .or. (length > longest .and. .not. follow(one, two, xi(:, c), sides_on(i, k)))) cycle
+            if (length < lap%length .or. (length > longest .and. sides_between(i, k) > most_between)) cycle
             lap = loop_of_lap_t(i, k, xi(:, c), length, point)
           end do
           between = between + length_between(two, two%range(1), two%range(2))
@@ -86,27 +92,15 @@ contains
 
   contains
 
-    !> Sides of the old mesh from that of an arc to that of another one behind it.
-    pure function sides_on(from, to) result(number)
+    !> Sides of the old mesh between that of an arc and that of another one behind it; -1 where they are one side.
+    pure function sides_between(from, to) result(number)
       integer, intent(in) :: from, to
       integer :: number
 
-      number = modulo(boundary%arcs(to)%side - boundary%arcs(from)%side, size(tags%on_wall))
-    end function sides_on
+      number = modulo(boundary%arcs(to)%side - boundary%arcs(from)%side, size(tags%on_wall)) - 1
+    end function sides_between
 
   end subroutine find_loop
-
-  !> Arcs of one side of the old mesh, or of two that follow one another, cross; or they would if one were a little longer.
-  pure function follow(one, two, xi, sides)
-    type(arc_t), intent(in) :: one, two
-    real(wp), intent(in) :: xi(2)
-    integer, intent(in) :: sides   !! from the one's to the other's
-    logical :: follow
-
-    follow = sides <= 1
-    if (sides == 2) follow = one%range(2) - xi(1) <= near_end*(one%range(2) - one%range(1)) .or. &
-                             xi(2) - two%range(1) <= near_end*(two%range(2) - two%range(1))
-  end function follow
 
   pure subroutine cut_off(lap, contacts, boundary, laps)
     type(loop_of_lap_t), intent(in) :: lap

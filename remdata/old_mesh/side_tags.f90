@@ -11,7 +11,7 @@ module side_tags
   use scene, only: axisymmetric, scene_t
   implicit none
   private
-  public :: side_tags_t, find_tags, same_tags, held_nodes, kept_corners
+  public :: side_tags_t, find_tags, same_supports, same_tags, held_nodes, kept_corners
 
   !> Numbers are those of the scene's lists.
   type :: side_tags_t
@@ -92,10 +92,18 @@ contains
     logical :: same
 
     same = all(tags%on_set(:, one) .eqv. tags%on_set(:, other)) .and. &
-           all(tags%on_group(:, one) .eqv. tags%on_group(:, other)) .and. &
-           all(tags%on_fixation(:, one) .eqv. tags%on_fixation(:, other)) .and. &
-           all(tags%on_die(:, one) .eqv. tags%on_die(:, other)) .and. (tags%on_wall(one) .eqv. tags%on_wall(other))
+           all(tags%on_group(:, one) .eqv. tags%on_group(:, other)) .and. same_supports(tags, one, other)
   end function same_tags
+
+  !> Two sides have the same supports, are pieces of the same deformable dies, and both lie on a wall or neither does.
+  pure function same_supports(tags, one, other) result(same)
+    type(side_tags_t), intent(in) :: tags
+    integer, intent(in) :: one, other
+    logical :: same
+
+    same = all(tags%on_fixation(:, one) .eqv. tags%on_fixation(:, other)) .and. &
+           all(tags%on_die(:, one) .eqv. tags%on_die(:, other)) .and. (tags%on_wall(one) .eqv. tags%on_wall(other))
+  end function same_supports
 
   !> Kept corners: whether a new mesh has a node where each side ends, too, because the tags change there or the contour turns.
   pure function kept_corners(loop, tags, x, turn) result(kept)
