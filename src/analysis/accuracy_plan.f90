@@ -207,8 +207,9 @@ contains
   end subroutine accuracy_lines
 
   !> What limits the accuracy where less was reached than asked; nothing where it was reached.
-  pure function accuracy_warning(accuracy) result(words)
+  pure function accuracy_warning(accuracy, by_euler) result(words)
     type(accuracy_t), intent(in) :: accuracy
+    logical, intent(in) :: by_euler   !! temperatures are found by a scheme of first order where one of second order can be had
     character(len=:), allocatable :: words
     integer :: k
 
@@ -223,7 +224,9 @@ contains
             //'probe reads another node or point, the nearest to its place: ask for the place of a node'
           if (plan%divisible) words = words//'; give a finer one, or elements that are smaller where the stress changes fast'
         else if (reached%time >= reached%depth) then
-          words = words//': '//percent(reached%time)//' comes of the steps; give shorter ones (STRAT)'
+          words = words//': '//percent(reached%time)//' comes of the steps; '
+          if (by_euler) words = words//'take THETA TRBDF2 with TOL, of second order in them, or '
+          words = words//'give shorter ones (STRAT)'
         else
           words = words//': '//percent(reached%depth)//' comes of the penetration; give AUGMENT, or a smaller PENETR'
         end if

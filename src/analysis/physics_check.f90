@@ -4,6 +4,7 @@ module physics_check
   use closing_dies, only: judge_closing
   use contact_check, only: judge_contact, words_of
   use contact_outlook, only: look_at_contact, outlook_t
+  use cut_multipliers, only: judge_cut_multipliers
   use fields, only: displacement_field
   use heat_check, only: check_exchanges, check_heat
   use law_api, only: law_t
@@ -33,6 +34,7 @@ contains
     integer :: g
 
     allocate (table(0), warnings(0))
+    call judge_cut_multipliers(scene, warnings)
     call check_heat(scene, laws, table, warnings)
     do g = 1, size(scene%groups)
       call judge_axis(scene, scene%groups(g), warnings)
@@ -74,6 +76,7 @@ contains
     integer :: g
 
     allocate (warnings(0))
+    call judge_cut_multipliers(scene, warnings)
     call check_exchanges(scene, warnings)
     do g = 1, size(scene%groups)
       call judge_axis(scene, scene%groups(g), warnings)

@@ -11,6 +11,7 @@ module run_ending
   use crossed_bodies, only: warn_of_crossed_bodies
   use cut_report, only: warn_of_webs
   use errors, only: error_t, exit_done, exit_no_convergence
+  use fields, only: find_field
   use floating_bodies, only: warn_of_floating_bodies, warn_of_idle_dies
   use folded_bodies, only: warn_of_folds
   use folding_bodies, only: law_of_folds
@@ -27,6 +28,7 @@ module run_ending
   use run_record, only: run_t
   use run_version, only: blas_words, version_text
   use scene, only: scene_t
+  use strategy, only: coupling_monolithic, scheme_tr_bdf2
   use solution, only: solution_t
   use standard_streams, only: print_line, print_lines
   use summary, only: write_summary
@@ -218,9 +220,21 @@ contains
     if (.not. there) return
     allocate (facts%closing%accuracy)
     call judge_run(run%plan, sample, facts%closing%accuracy)
-    words = accuracy_warning(facts%closing%accuracy)
+    words = accuracy_warning(facts%closing%accuracy, by_euler(scene))
     if (len(words) > 0) call add_text(facts%warnings, words)
   end subroutine close_cost
+
+  !> Temperatures are found by a scheme of first order, and could be by one of second order.
+  pure function by_euler(scene) result(yes)
+    type(scene_t), intent(in) :: scene
+    logical :: yes
+    integer :: f
+
+    f = find_field(scene%fields, 'temperature')
+    yes = .false.
+    if (f > 0) yes = scene%fields(f)%declared .and. scene%strategy%scheme /= scheme_tr_bdf2 &
+                     .and. scene%strategy%coupling /= coupling_monolithic
+  end function by_euler
 
   !> The summary of an operation that others follow has a name of its own.
   pure function summary_name(scene, run) result(name)

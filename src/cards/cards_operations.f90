@@ -132,7 +132,7 @@ contains
     type(remesh_t), intent(in), optional :: remesh
     type(deck_t), target :: part
     real(wp) :: begins
-    integer :: i, mistakes
+    integer :: i, mistakes, shared
 
     if (operations%count == 0) then
       call read_scene(deck, scene, diagnostics, remesh, operations%fineness, operations%folding)
@@ -151,6 +151,12 @@ contains
     scene%operation = k
     scene%operations = operations%count
     scene%operation_name = operations%names(k)%s
+    ! multipliers stand in the order of their cards
+    shared = 0
+    do i = 1, operations%first(1) - 1
+      if (deck%cards(i)%keyword == 'LIC') shared = shared + 1
+    end do
+    scene%multipliers(:min(shared, size(scene%multipliers)))%shared = .true.
     if (diagnostics%count() > mistakes) return
     if (k > 1) call keep_heat_due(scene)
     begins = 0

@@ -1,11 +1,10 @@
 !> Conductances of the points of heat through contact, as the mechanics has left them, to be handed over from one turn of the solves
 !> to the next (exchange_in_turns).
 module contact_conductance
-  use drivers, only: at_die_piece, at_pressure, at_status, drivers_t, hand_over_conductance, heat_contact_drivers
+  use drivers, only: at_die_piece, at_status, drivers_t, hand_over_conductance, heat_contact_drivers
   use heat_contact_point, only: conductance_by_contact
   use heat_contacts, only: largest_conductance
   use kinds, only: wp
-  use law_api, only: contact_open
   use scene, only: scene_t
   use side_points, only: side_length
   use solution, only: solution_t
@@ -28,12 +27,11 @@ contains
   end function conductance_count
 
   !> Conductances as the trial state has them, group by group; not_handed where contact knows nothing of a point.
-  subroutine conductance_of_solution(scene, solution, drivers, values, unpressed)
+  subroutine conductance_of_solution(scene, solution, drivers, values)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(drivers_t), intent(in) :: drivers(:)   !! (ngroup)
     real(wp), intent(out) :: values(:)          !! (conductance_count) [power/area/temperature], [-]
-    logical, intent(in), optional :: unpressed  !! by the gaps alone, as heat has it where contact knows nothing of a point
     real(wp) :: now(heat_contact_drivers), side
     integer :: g, p, e, k, i
 
@@ -48,9 +46,6 @@ contains
             do k = at_status, at_die_piece
               now(k) = solution%groups(group%host)%trial(own%source(k)%row(group%host), p, e)
             end do
-            if (present(unpressed)) then
-              if (unpressed) now([at_status, at_pressure]) = [real(contact_open, wp), 0.0_wp]
-            end if
             values(i + 1:i + 2) = conductance_by_contact(group, now, side)
             i = i + 2
           end do

@@ -26,7 +26,7 @@ module drivers
   public :: from_nothing, from_field, from_state, from_flow, from_itself, &
             from_effusivity, from_stress, from_unloading, from_stretch, flow_name, at_status, at_pressure, at_gap, at_die_piece, &
             at_die_xi, at_friction_work, at_corner_work, at_corner_place, at_body_effusivity, at_die_effusivity, at_handed, &
-            heat_contact_drivers, not_handed, of_contact, &
+            as_without_contact, heat_contact_drivers, not_handed, of_contact, &
             driver_source_t, drivers_t, with_slopes, drives_heat, planes_of_heat, drivers_of_half, own_states_at_end, is_scalar
 
   !> Where a driver comes from. A state variable of the formulation itself is that at the start of the step.
@@ -43,8 +43,8 @@ module drivers
   integer, parameter :: at_status = 2, at_pressure = 3, at_gap = 4, at_die_piece = 5, at_die_xi = 6, at_friction_work = 7, &
                         at_corner_work = 8, at_corner_place = 9, at_body_effusivity = 10, at_die_effusivity = 11, &
                         at_handed = 12, heat_contact_drivers = 13
-  !> Nothing is handed over, or contact knows nothing of the point.
-  real(wp), parameter :: not_handed = -1.0_wp
+  !> Nothing is handed over, or contact knows nothing of the point; and what heat had where contact knew nothing of it.
+  real(wp), parameter :: not_handed = -1.0_wp, as_without_contact = -2.0_wp
   character(len=20), parameter :: of_contact(at_status:at_corner_place) = &
                                   ['contact_status      ', 'pressure            ', 'penetration         ', 'die_piece           ', &
                                    'die_xi              ', 'friction_work       ', 'corner_friction_work', 'corner_place        ']

@@ -1,8 +1,10 @@
 !> GOLDAK: heat of a welding torch in the volume of bodies (weld_sources).
 !>
-!> F_i = -sum_k w_k m_k sum phi_i q(x, t_k) dv at the instants k of the flow rule (elem_api), on the elements where they stand at
-!> the start of the step, with nine points each; q is the shape of the source there and m_k what makes the sum over all elements of
-!> its bodies the stated power at every instant, whatever the mesh and wherever the ellipsoid ends. It depends on no unknown.
+!> F_i = -sum_k w_k m_k sum phi_i q(x_k, t_k) dv at the instants k of the flow rule (elem_api), on the elements where they stand
+!> then, by the motion of the step so far; with nine points each. q is the shape of the source there and m_k what makes the sum over
+!> all elements of its bodies the stated power at every instant, whatever the mesh and wherever the ellipsoid ends. It depends on no
+!> temperature; its derivative along the motion is left out: it only moves heat about within the ellipsoid, by the share that the
+!> thermal expansion in a step is of its axes, and Newton's iteration converges by that factor where both are solved together.
 module elem_weld_source
   use elem_api, only: block_inverted, block_without_source, elem_t, instant_t, layout_t, mode_advance, no_variables, report_t, &
                       that_reads
@@ -58,7 +60,7 @@ contains
     type(report_t), intent(out) :: report
     type(quad8_rule_t) :: rule
     type(functions_t) :: own
-    real(wp) :: shape(npoint), area(npoint), volume(npoint), section(3)
+    real(wp) :: shape(npoint), area(npoint), volume(npoint), here(2, 8)
     integer :: e, k, n
     logical :: valid
 
@@ -68,8 +70,6 @@ contains
     n = layout%count(1)
     call quad8_rule(npoint, rule)
     call functions_of(n == 4, rule, own)
-    section = scene%section
-    if (kinematics%finite) section = instant%section
     do k = 1, instant%flow%n
       associate (factor => instant%flow%source_factors(group%source, k), time => instant%flow%times(k))
         if (factor < 0) then
@@ -79,8 +79,9 @@ contains
         end if
         if (.not. factor > 0) cycle
         do e = 1, size(x, 3)
-          if (.not. reaches(scene%sources(group%source), time, x(:, :, e))) cycle
-          call sample(scene, group%source, rule, section, time, x(:, :, e), shape, area, volume, valid)
+          here = instant%flow%places(:, group%connectivity(:, first + e - 1), k)
+          if (.not. reaches(scene%sources(group%source), time, here)) cycle
+          call sample(scene, group%source, rule, instant%flow%sections(:, k), time, here, shape, area, volume, valid)
           if (.not. valid) then
             report%status = block_inverted
             report%element = first + e - 1
@@ -95,8 +96,8 @@ contains
   !> What makes the power of a source that of the elements, for each source at one time; negative where it has no place.
   pure subroutine source_factors(scene, section, coordinates, time, power, factors)
     type(scene_t), intent(in) :: scene
-    real(wp), intent(in) :: section(3)          !! at the start of the step (sections)
-    real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) at the start of the step [length]
+    real(wp), intent(in) :: section(3)          !! at this time (sections)
+    real(wp), intent(in) :: coordinates(:, :)   !! (2, nnode) at this time [length]
     real(wp), intent(in) :: time                !! [time]
     real(wp), intent(in) :: power(:)            !! (nsource) of each then [power]
     real(wp), intent(out) :: factors(:)         !! (nsource) heat per volume at the centre [power/volume]

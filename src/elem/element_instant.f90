@@ -20,8 +20,9 @@ module element_instant
     !> Multipliers at these instants (nmultiplier, n); and those of heat that a deck states (FLUX, HEATS), of which a step takes the
     !> mean, so that its heat is the stated one.
     real(wp), allocatable :: multipliers(:, :), stated(:, :)
-    !> The instants (n), and the factors of the sources of torches there (nsource, n); not allocated where there is none.
-    real(wp), allocatable :: times(:), source_factors(:, :)
+    !> The instants (n), the factors of the sources of torches there (nsource, n), and where nodes (2, nnode, n) [length] and the
+    !> section (3, n) are then; not allocated where there is none.
+    real(wp), allocatable :: times(:), source_factors(:, :), places(:, :, :), sections(:, :)
   end type flow_rule_t
 
   !> The instant at which a block is computed.

@@ -1,6 +1,7 @@
 !> Heat at a point of a side that faces a die, to the unknowns of both: what they exchange, and what friction left there
 !> (elem_heat_contact has the formulas).
 module heat_contact_flows
+  use conductance_in_step, only: conductance_within
   use elem_api, only: instant_t, report_t
   use heat_contact_point, only: facing_t, shares_t
   use heat_contacts, only: flow_from_die, heat_contact_t
@@ -57,7 +58,7 @@ contains
       t(:n) = start(shares%place(:n)) + instant%flow%share(k)*du(shares%place(:n))
       ! conductances are those at both ends of the whole step, of which a stage is a part
       gone = instant%flow%share(k)*instant%reach
-      h = (1 - gone)*facing%conductance(:, 1) + gone*facing%conductance(:, 2)
+      h = conductance_within(contact, facing, gone)
       if (shares%nside == 3) then
         call add_flow(contact, instant, k, shares, 1.0_wp, t(:n), h, area, moving, force, stiffness)
         cycle

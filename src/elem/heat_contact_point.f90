@@ -2,7 +2,8 @@
 module heat_contact_point
   use closest_point, only: closest_point_t
   use curve_search, only: closest_facing_point
-  use drivers, only: at_die_piece, at_die_xi, at_gap, at_handed, at_pressure, at_status, heat_contact_drivers, not_handed
+  use drivers, only: as_without_contact, at_die_piece, at_die_xi, at_gap, at_handed, at_pressure, at_status, &
+                     heat_contact_drivers, not_handed
   use elem_api, only: instant_t, layout_t
   use heat_contacts, only: conductance_of
   use kinds, only: wp
@@ -31,6 +32,10 @@ module heat_contact_point
     real(wp) :: xi = 0.0_wp
     !> Conductances at the start and at the end of the step (conductance_of in heat_contacts).
     real(wp) :: conductance(2, 2) = 0.0_wp
+    !> Contact knows of the point at both ends of the step: closed there, its pressures [stress], and its gaps, of closed points
+    !> below 0 [length].
+    logical :: followed = .false., closed(2) = .false.
+    real(wp) :: pressure(2) = 0.0_wp, gap(2) = 0.0_wp
     !> Unit tangent of the die, in the sense in which the side is walked.
     real(wp) :: along(2) = 0.0_wp
   end type facing_t
@@ -76,7 +81,7 @@ contains
     type(contact_point_t) :: point
     type(closest_point_t) :: closest
     real(wp), parameter :: still(6) = 0.0_wp
-    real(wp) :: reach, gap
+    real(wp) :: gap
     logical :: closed
     integer :: k
 
@@ -85,23 +90,41 @@ contains
       facing%xi = drivers(at_die_xi, 2)
       do k = 1, 2
         facing%conductance(:, k) = conductance_by_contact(group, drivers(:, k), side)
+        facing%closed(k) = is_closed(drivers(:, k), side)
       end do
-      if (facing%conductance(1, 1) < 0) facing%conductance(:, 1) = facing%conductance(:, 2)
-      if (.not. drivers(at_handed, 2) < 0) facing%conductance(:, 2) = drivers(at_handed:heat_contact_drivers, 2)
-      closed = is_closed(drivers(:, 2), side)
-      gap = -drivers(at_gap, 2)
+      facing%pressure = drivers(at_pressure, :)
+      facing%gap = -drivers(at_gap, :)
+      ! the first step, or a die that has come near
+      facing%followed = all(facing%conductance(1, :) >= 0)
+      if (facing%conductance(1, 1) < 0 .and. facing%piece > 0) then
+        if (allocated(scene%dies(group%die)%nodes)) then
+          facing%conductance(:, 1) = facing%conductance(:, 2)
+        else
+          call search_at_start(scene, group, instant, phi, dphi, section, side, x, closest)
+          facing%followed = closest%piece > 0
+          facing%gap(1) = merge(-closest%d, huge(side), facing%followed)
+          facing%closed(1) = facing%gap(1) <= touching*side
+          facing%pressure(1) = 0
+          facing%conductance(:, 1) = conductance_of(group%heat_contact, facing%closed(1), 0.0_wp, facing%gap(1))
+        end if
+      end if
+      if (.not. drivers(at_handed, 2) < 0) then
+        facing%conductance(:, 2) = drivers(at_handed:heat_contact_drivers, 2)
+      else if (.not. drivers(at_handed, 2) > as_without_contact .and. facing%piece > 0) then
+        ! the point was searched: on a rigid die at the start, on sides at the end of the step
+        facing%conductance(:, 2) = facing%conductance(:, 1)
+        if (allocated(scene%dies(group%die)%nodes)) &
+          facing%conductance(:, 2) = conductance_of(group%heat_contact, facing%gap(2) <= touching*side, 0.0_wp, facing%gap(2))
+      end if
+      closed = facing%closed(2)
+      gap = facing%gap(2)
     end if
     if (facing%piece == 0) then
-      reach = max(group%heat_contact%reach, searched*side)
       if (allocated(scene%dies(group%die)%nodes)) then
         call side_point(phi, dphi, section, y, still, most_unknowns, point)
-        call closest_facing_point(instant%dies(group%die), point%x, point%e_r, reach, closest)
+        call closest_facing_point(instant%dies(group%die), point%x, point%e_r, reach_of(group, side), closest)
       else
-        associate (pilot => instant%pilots(:, group%die))
-          call side_point(phi, dphi, section, x, still, most_unknowns, point)
-          call closest_facing_point(scene%dies(group%die), turned(point%x - pilot(1:2), -pilot(3)), &
-                                    turned(point%e_r, -pilot(3)), reach, closest)
-        end associate
+        call search_at_start(scene, group, instant, phi, dphi, section, side, x, closest)
       end if
       facing%piece = closest%piece
       facing%xi = closest%xi
@@ -109,6 +132,7 @@ contains
       gap = -closest%d
       closed = gap <= merge(touching, touching_still(group), size(drivers, 1) > 0)*side
       facing%conductance = spread(conductance_of(group%heat_contact, closed, 0.0_wp, gap), 2, 2)
+      facing%followed = .false.
     end if
     facing%found = closed .or. gap <= group%heat_contact%reach .or. any(facing%conductance > 0)
     if (allocated(scene%dies(group%die)%nodes)) then
@@ -118,6 +142,35 @@ contains
     end if
     facing%along = facing%along/length_of(facing%along)
   end subroutine find_facing
+
+  !> The closest point of a rigid die where both stand at the start of the step (one that is made of sides is known at its end
+  !> alone).
+  subroutine search_at_start(scene, group, instant, phi, dphi, section, side, x, closest)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    type(instant_t), intent(in) :: instant
+    real(wp), intent(in) :: phi(3), dphi(3), section(3)
+    real(wp), intent(in) :: side      !! length of the side [length]
+    real(wp), intent(in) :: x(2, 3)   !! its nodes at the start of the step [length]
+    type(closest_point_t), intent(out) :: closest
+    type(contact_point_t) :: point
+    real(wp), parameter :: still(6) = 0.0_wp
+
+    associate (pilot => instant%pilots(:, group%die))
+      call side_point(phi, dphi, section, x, still, most_unknowns, point)
+      call closest_facing_point(scene%dies(group%die), turned(point%x - pilot(1:2), -pilot(3)), turned(point%e_r, -pilot(3)), &
+                                reach_of(group, side), closest)
+    end associate
+  end subroutine search_at_start
+
+  !> How far a die is searched for [length].
+  pure function reach_of(group, side) result(reach)
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: side   !! length of the side [length]
+    real(wp) :: reach
+
+    reach = max(group%heat_contact%reach, searched*side)
+  end function reach_of
 
   !> Share of a side at which a point is closed in a scene of heat alone; rows GAP say themselves what a small gap does.
   elemental function touching_still(group) result(share)

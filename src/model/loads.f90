@@ -12,6 +12,8 @@ module loads
   type :: multiplier_t
     character(len=:), allocatable :: name
     real(wp), allocatable :: time(:), value(:)
+    !> It stands before the operations of the deck, and is of all of them.
+    logical :: shared = .false.
   end type multiplier_t
 
   !> Value of a field on the nodes of a body at the start, or on all nodes.

@@ -24,6 +24,8 @@ module phase_step
 
   !> Where several phases form at once, a sub-step is divided so that none grows by more than this extended fraction, as it would
   !> at the start; into so many parts at most.
+  !> Less austenite than that makes nothing new.
+  real(wp), parameter :: least_austenite = 1.0e-3_wp
   real(wp), parameter :: most_growth = 0.1_wp
   integer, parameter :: most_parts = 64
   !> Where the cooling rate of hardness is taken [degC].
@@ -87,7 +89,7 @@ contains
       a = b
       k = k + direction
     end do
-    call pass_rate(dt, before, now, s(at_rate))
+    call pass_rate(dt, before, now, committed(austenite), s(at_rate))
     state = s%value
     slope = s%slope
     heat = released%value
@@ -196,13 +198,23 @@ contains
     s(austenite) = dual_t(1 - others%value, -others%slope)
   end subroutine settle
 
-  !> Cooling rate on the way through 700 degC.
-  pure subroutine pass_rate(dt, before, now, rate)
-    real(wp), intent(in) :: dt, before, now
-    type(dual_t), intent(inout) :: rate
+  !> Cooling through 700 degC at the rate of the step: that of the phases that form from the austenite there. What was there already
+  !> has formed at another one: of Maynier's hardness, linear in the logarithm of the rate, the mean by amounts counts. Of a mixture
+  !> that the deck gives no rate is known: it counts as formed at the same one, if any forms.
+  pure subroutine pass_rate(dt, before, now, fraction, rate)
+    real(wp), intent(in) :: dt, before, now     !! [s], temperatures of the step [degC]
+    real(wp), intent(in) :: fraction            !! of austenite at its start [-]
+    type(dual_t), intent(inout) :: rate         !! [K/s]
+    real(wp) :: new, old
 
     if (.not. (before >= rate_temperature .and. now < rate_temperature .and. dt > 0)) return
-    rate = dual_t((before - now)/dt, -1/dt)
+    if (.not. fraction > least_austenite) return
+    new = (before - now)/dt
+    old = rate%value
+    rate = dual_t(new, -1/dt)
+    if (.not. old > 0) return
+    rate%value = exp((1 - fraction)*log(old) + fraction*log(new))
+    rate%slope = -fraction*rate%value/(new*dt)
   end subroutine pass_rate
 
 end module phase_step

@@ -4,12 +4,16 @@ module reheating
   use dual_numbers, only: dual_t, operator(*), operator(+), operator(-), operator(/)
   use latent_heat, only: release_latent
   use phase_growth, only: forget_growth
-  use phase_state, only: at_coldest, at_grain, never_cold
+  use phase_state, only: at_coldest, at_grain, at_rate, never_cold
   use phase_tempering, only: forget_tempering
+  use kinds, only: wp
   use steels, only: austenite, first_diffusive, last_diffusive, phase_count, steel_t
   implicit none
   private
   public :: heat_up
+
+  !> All is austenite from this fraction on.
+  real(wp), parameter :: all_austenite = 0.99_wp
 
 contains
 
@@ -41,6 +45,8 @@ contains
       call forget_growth(steel, i, temperature%value, s)
     end do
     s(at_coldest) = dual_t(never_cold)
+    ! what forms next has a rate of its own
+    if (s(austenite)%value > all_austenite) s(at_rate) = dual_t()
     call forget_tempering(s)
   end subroutine heat_up
 

@@ -70,7 +70,7 @@ contains
       length = merge(0.0_wp, dt, in_two_stages(scene, solution, outcome))
       call flows(scene, equations, solution, dt, outcome%du, reached, mean_over=length)
       passed = equations%buffers%force
-      call hand_over_again(scene, solution, equations, exchange)
+      call hand_over_again(equations, exchange)
       allocate (lag%flows(equations%dofs%ndof))
       call flows(scene, equations, solution, dt, outcome%du, lag%flows, mean_over=length)
       lag%rates = 0.5_wp*(lag%flows - reached)

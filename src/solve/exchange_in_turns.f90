@@ -10,7 +10,7 @@
 module exchange_in_turns
   use contact_conductance, only: conductance_of_solution, conductance_count, hand_over, largest_conductances
   use driver_values, only: stress_of_solution
-  use drivers, only: hand_over_stress, not_handed, stress_driver_count
+  use drivers, only: as_without_contact, hand_over_stress, not_handed, stress_driver_count
   use equations, only: equations_t
   use kinds, only: wp
   use scene, only: scene_t
@@ -117,23 +117,17 @@ contains
     if (differ) call hand_over_values(reached, equations)
   end subroutine hand_over_reached
 
-  !> What the turn was made with is handed over again; where contact knew nothing of a point, as heat has found it then, without a
-  !> pressure.
-  subroutine hand_over_again(scene, solution, equations, exchange)
-    type(scene_t), intent(in) :: scene
-    type(solution_t), intent(in) :: solution
+  !> What the turn was made with is handed over again; where contact knew nothing of a point, as heat has found it then.
+  subroutine hand_over_again(equations, exchange)
     type(equations_t), intent(inout) :: equations
     type(turns_t), intent(in) :: exchange
     type(turns_t) :: again
-    real(wp), allocatable :: unpressed(:)
 
     if (.not. allocated(exchange%x)) return
     again%nstress = exchange%nstress
     again%x = exchange%x
     associate (n => exchange%nstress)
-      allocate (unpressed(size(again%x) - n))
-      call conductance_of_solution(scene, solution, equations%drivers, unpressed, unpressed=.true.)
-      where (.not. again%x(n + 1:) > not_handed) again%x(n + 1:) = unpressed
+      where (.not. again%x(n + 1:) > not_handed) again%x(n + 1:) = as_without_contact
     end associate
     call hand_over_values(again, equations)
   end subroutine hand_over_again

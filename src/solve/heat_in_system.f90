@@ -8,7 +8,7 @@ module heat_in_system
   use equations, only: equations_t, solves_heat
   use fields, only: find_field
   use heat_error, only: estimate_error, flows
-  use heat_stages, only: evaluation_t, judge, keep_evaluation, return_to
+  use heat_stages, only: add_middle, evaluation_t, judge, keep_evaluation, return_to
   use kinds, only: wp
   use kinetics_error, only: keep_piece, path_piece_t
   use scene, only: scene_t
@@ -35,7 +35,7 @@ contains
     type(path_piece_t) :: whole
     type(group_state_t), allocatable :: states(:)
     logical, allocatable :: active(:), is_own(:)
-    real(wp), dimension(equations%dofs%ndof) :: rest, before, after, erred, mean
+    real(wp), dimension(equations%dofs%ndof) :: rest, before, after, rates, erred, mean
     integer :: s, g
 
     if (.not. (outcome%converged .and. solves_heat(scene, equations))) return
@@ -55,8 +55,10 @@ contains
     call flows(scene, equations, solution, dt, outcome%du, after, mean_over=dt)
     call add_torches(scene, equations, [0.5_wp, 0.5_wp], erred, mean)
     call keep_piece(scene, equations, solution, dt, kept%element_force, whole)
-    call estimate_error(scene, equations, solution, dt, 0.5_wp*(after - before), in_sum(erred, mean), after, .false., whole, &
-                        outcome, at_hand=outcome%iterations > 0)
+    rates = 0.5_wp*(after - before)
+    call add_middle(scene, equations, solution, dt, outcome%du, before + after, rates, erred, mean)
+    call estimate_error(scene, equations, solution, dt, rates, in_sum(erred, mean), after, .false., whole, outcome, &
+                        at_hand=outcome%iterations > 0)
     equations%solves(s)%active = active
     equations%solves(s)%is_own = is_own
     do g = 1, size(states)

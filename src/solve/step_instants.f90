@@ -70,17 +70,10 @@ contains
         instant%flow%stated(k, :) = mean_of_multiplier(scene%multipliers(k), solution%time, solution%time + length)
       end do
     end if
-    if (any(scene%groups%source > 0)) call set_sources(scene, equations, solution, dt, instant)
+    if (any(scene%groups%source > 0)) call set_sources(scene, equations, solution, dt, du, instant)
     if (size(solution%fields) > size(mechanical_fields())) call list_values(equations%dofs, solution%fields, instant%values)
     if (size(solution%pairs) == 0) return
-    coordinates = present_coordinates(scene, solution)
-    associate (number => equations%dofs%fields(displacement_field)%number)
-      do k = 1, size(coordinates, 2)
-        do c = 1, 2
-          if (number(c, k) > 0) coordinates(c, k) = coordinates(c, k) + du(number(c, k))
-        end do
-      end do
-    end associate
+    coordinates = moved_places(scene, equations%dofs, solution, du)
     allocate (instant%dies, source=scene%dies)
     do k = 1, size(instant%dies)
       if (.not. is_deformable(instant%dies(k))) cycle
@@ -105,27 +98,29 @@ contains
     end associate
   end subroutine set_load_factor
 
-  !> Factors of the sources of torches at the instants at which heat flows, on the places of the start of the step.
-  subroutine set_sources(scene, equations, solution, dt, instant)
+  !> Factors of the sources of torches at the instants at which heat flows, on the places of the bodies then.
+  subroutine set_sources(scene, equations, solution, dt, du, instant)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: dt   !! [time]
+    real(wp), intent(in) :: dt       !! [time]
+    real(wp), intent(in) :: du(:)    !! (ndof) motion of the step [unknown]
     type(instant_t), intent(inout) :: instant
-    real(wp) :: coordinates(2, size(scene%mesh%coordinates, 2)), section(3), power(size(scene%sources))
+    real(wp) :: power(size(scene%sources))
     type(torch_step_t) :: step
     integer :: k
 
-    coordinates = scene%mesh%coordinates
-    section = scene%section
-    if (scene%finite) then
-      coordinates = present_coordinates(scene, solution)
-      section = instant%section
-    end if
-    instant%flow%times = solution%time + instant%flow%share(:instant%flow%n)*dt
-    allocate (instant%flow%source_factors(size(scene%sources), instant%flow%n))
     associate (flow => instant%flow)
+      flow%times = solution%time + flow%share(:flow%n)*dt
+      allocate (flow%source_factors(size(scene%sources), flow%n))
+      allocate (flow%places(2, size(scene%mesh%coordinates, 2), flow%n), flow%sections(3, flow%n))
       do k = 1, flow%n
+        flow%places(:, :, k) = scene%mesh%coordinates
+        flow%sections(:, k) = scene%section
+        if (scene%finite) then
+          flow%places(:, :, k) = moved_places(scene, equations%dofs, solution, flow%share(k)*du)
+          flow%sections(:, k) = moved_section(equations%dofs, instant%section, flow%share(k)*du)
+        end if
         if (allocated(equations%torches)) then
           power = torch_powers(scene, flow%times(k), equations%torches)
         else if (instant%content .and. dt > 0) then
@@ -134,10 +129,46 @@ contains
         else
           power = torch_powers(scene, flow%times(k))
         end if
-        call source_factors(scene, section, coordinates, flow%times(k), power, flow%source_factors(:, k))
+        call source_factors(scene, flow%sections(:, k), flow%places(:, :, k), flow%times(k), power, flow%source_factors(:, k))
       end do
     end associate
   end subroutine set_sources
+
+  !> Where the nodes are after a motion since the start of the step (2, nnode) [length].
+  function moved_places(scene, dofs, solution, du) result(coordinates)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: du(:)   !! (ndof) [unknown]
+    real(wp) :: coordinates(2, size(scene%mesh%coordinates, 2))
+    integer :: k, c
+
+    coordinates = present_coordinates(scene, solution)
+    associate (number => dofs%fields(displacement_field)%number)
+      do k = 1, size(number, 2)
+        do c = 1, size(number, 1)
+          if (number(c, k) > 0) coordinates(c, k) = coordinates(c, k) + du(number(c, k))
+        end do
+      end do
+    end associate
+  end function moved_places
+
+  !> The section after a motion since the start of the step.
+  pure function moved_section(dofs, start, du) result(section)
+    type(dofs_t), intent(in) :: dofs
+    real(wp), intent(in) :: start(3)   !! at the start of the step (sections)
+    real(wp), intent(in) :: du(:)      !! (ndof) [unknown]
+    real(wp) :: section(3)
+    integer :: c
+
+    section = start
+    associate (number => dofs%fields(section_field)%number)
+      if (size(number, 2) == 0) return
+      do c = 1, size(number, 1)
+        if (number(c, 1) > 0) section(c) = section(c) + du(number(c, 1))
+      end do
+    end associate
+  end function moved_section
 
   !> The displacements and the motion of the section from which a correction began, where geometry follows the displacements.
   pure subroutine note_correction(scene, dofs, motion, instant)

@@ -195,6 +195,17 @@ def told_where_it_is_not(checks):
                 "a mesh that is written out is named", warned)
 
 
+def steps_by_euler(checks):
+    """A wall with one side heated, by implicit Euler, which would need far more steps: the scheme of second order is advised."""
+    wall = ("TITLE wall\nSTATE PLSTN\nKINEM SMALL\nBLOCK w PL8TM 9 m\n   0. 0. 1. 0. 1. 0.1 0. 0.1\n   8 1. 1 1.\nLAW m HEAT\n   1. 1.\nSTART T 0.\n"
+            "IMPOS w 4 T on\nLIC on\n   0. 0. 0.1 100.\nPROBE a NODE T 0.5 0.\nPROBE b NODE T 1. 0.\n{}STRAT 0.01 0.005 0.05 5 3\nSTOP 0.2\n"
+            "ACCURACY 0.05 % OF a b\nEND\n")
+    for name, scheme, advised in (("euler", "", True), ("trbdf2", "THETA TRBDF2\n", False)):
+        _, summary, _ = call(checks, name, wall.format(scheme))
+        warned = [w["text"] for w in summary["warnings"] if "ACCURACY" in w["text"]]
+        checks.that(any("take THETA TRBDF2" in text for text in warned) == advised, f"{name}: the scheme that is advised", warned)
+
+
 def probe_beside_a_node(checks):
     """The coordinate of the node nearest to a place where the deck's own mesh has none is that of another node on every mesh: told."""
     text = ("TITLE a strip stretched\nSTATE PLSTN\nKINEM SMALL\nBLOCK strip PL8LS 4 m\n   0. 0.   5. 0.   5. 1.   0. 1.\n   3 1.   1 1.\nLAW m ELA\n   1000. 0.3\n"
@@ -286,6 +297,7 @@ def main():
                 once_more(checks, scene, asked, folder, history)
     if not names:
         told_where_it_is_not(checks)
+        steps_by_euler(checks)
         probe_beside_a_node(checks)
         none_of_supports(checks)
         moments_of_dies_that_turn(checks)

@@ -15,6 +15,8 @@ Gaussians (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 10.2; f
 - `ring`: all of the power of a ring, through its LIC, at the end of a bar, half of it outside; two bodies share a source as one does.
 - `laws`: enthalpy with latent heat by TRBDF2, and phases of a steel: books of heat.
 - `motion`: a billet pressed flat (LOG) while a ring heats it, on one mesh and on three: the heat is still the stated one.
+- `under`: a plate that moves below a torch at rest is heated as one at rest below a torch that moves: by steps in which it goes
+  a third of the torch's semi-axis, within 0.5 K of 100 (6.3 K where its place at the start of the step counts).
 - `whole`: a torch that crosses leaves its heat whatever the step and the scheme, exact to round-off, with a multiplier too; one that begins
   or ends in the plane is told.
 - `told`: the error in time that is told at the end is that against short steps.
@@ -229,6 +231,26 @@ def motion(checks):
         checks.small(abs(got/(0.7*500*0.7) - 1), 1e-10, f"motion: heat over three meshes {got:.4f}")
 
 
+def under(checks):
+    """A plate below a torch: one of both moves."""
+    found = {}
+    for name, plate, torch in (("plate-moves", 5.0, 0.0), ("torch-moves", 1e-4, -5.0)):
+        deck = (HEAD.format(title="under", state="PLSTN").replace("SMALL", "LOG")
+                + "BLOCK plate PL8LS 9 rigid\n   0. 0. 40. 0. 40. 10. 0. 10.\n   80 1. 12 1.\nLAW rigid ELA\n   200000. 0.3\n"
+                + "ADDEL plate PL8TM heat\nLAW heat HEAT\n   30. 4.\nSTART T 20.\n"
+                + f"MOVE plate 1 2 3 4 X go {plate}\nFIXED plate 1 2 3 4 Y\nLIC go\n   0. 0. 4. 4.\n"
+                + "GOLDAK plate P 1.E4 ETA 0.8 FRONT 3. REAR 3. DEPTH 3. INTO 0. -1.\n"
+                + f"   0. 30. 10.\n   4. {30 + 4*torch} 10.\nTHETA TRBDF2\n" + steps(0.2, 4.0)
+                + "PROBE a NODE T 30. 10.\nPROBE b NODE T 20. 10.\nPROBE c NODE T 12. 10.\nPROBE d NODE T 20. 6.\nEND\n")
+        run = Run(checks, name, deck)
+        if run.ok:
+            books(checks, run, 0.8*1e4*4, 1e-10, "heat of a torch and a plate, one of which moves")
+            found[name] = [run.history[place][-1] for place in "abcd"]
+    if checks.that(len(found) == 2, "under: both runs"):
+        off_by = np.max(np.abs(np.subtract(*found.values())))
+        checks.small(off_by, 0.5, f"under: {found}")
+
+
 def off(checks):
     """A torch that goes past the end of its body."""
     deck = (HEAD.format(title="off", state="PLSTN") + "BLOCK bar PL8TM 4 steel\n   0. -0.01 0.02 -0.01 0.02 0. 0. 0.\n   10 1. 5 1.\n"
@@ -331,6 +353,7 @@ def main():
     ring(checks)
     laws(checks)
     motion(checks)
+    under(checks)
     off(checks)
     long_steps(checks)
     whole(checks)

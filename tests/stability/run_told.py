@@ -74,6 +74,9 @@ WRONG = {
     "E in GPa": ({"200000. 0.3": "200. 0.3"}, "in one unit?"),
     "nothing acts": ({"1. -2.": "1. 0."}, "nothing moves and no load acts"),
 }
+WRONG["stopped half way"] = ({"STRAT  0.1": "STOP   0.5\nSTRAT  0.1"}, "LIC press goes on after the end at 0.5, where it is -1: to -2 at 1")
+WRONG["an operation stopped half way"] = ({"END\n": "OPERA  one\nLIC    more\n   0. 0.   1. 3.\nMOVE   upper X more\nSTOP   0.5\nEND\n"},
+                                          "LIC more goes on after the end of the operation one at 0.5")
 WRONG["pressed on the axis"] = ({"PLSTN": "AXISYM", "-5. 15.": "0. 15.", "LIC    press": "PRES2D billet 4 3 10. press\nLIC    press"},
                                 "billet.4/press: its sides lie on the axis")
 # A body that is heated, and does not expand.
@@ -99,7 +102,9 @@ WRONG["dies through each other"] = (PRESSED, "dies upper and lower go through ea
 WRONG["a punch through a flange"] = ({"FIXED  billet 1 Y\n": BORE.format("   SEGM  10. 10.   20. 10.\n"), "1. -2.": "1. -6."},
                                      "dies upper and bore go through each other")
 # What is changed in the base, and means what it says: far below the face at the exit of a drawing die is not in its body.
-RIGHT = {"blocks joined": {"LAW    rough": BESIDE + "JOIN   billet 2 beside 4\nLAW    rough"},
+RIGHT = {"a multiplier of two operations": {"END\n": "OPERA  one\nSTOP   0.5\nOPERA  two\nEND\n"},
+         "stopped after the last change": {"1. -2.": "1. -2.   3. -2.", "STRAT  0.1": "STOP   2.\nSTRAT  0.1"},
+         "blocks joined": {"LAW    rough": BESIDE + "JOIN   billet 2 beside 4\nLAW    rough"},
          "blocks in contact": {"LAW    rough": BESIDE + "DIE    wall SIDES billet 2\nCNT2D  beside 4 wall rough\nLAW    rough"},
          "blocks at a corner": {"LAW    rough": BESIDE.replace("10. 0.   20. 0.   20. 15.   10. 15.", "10. 15.   20. 15.   20. 30.   10. 30.")
                                 .replace("CNT2D  beside 3 upper -3 rough\n", "") + "FIXED  beside 2 X\nLAW    rough"},
