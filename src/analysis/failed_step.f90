@@ -47,6 +47,7 @@ contains
       run%crossings = 0
     end if
     run%crossings = merge(run%crossings + 1, 0, outcome%passes_itself)
+    if (run%crossings == 1) run%crossed_from = dt
     on_probation = is_on_probation(solution%probation)
     unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
@@ -71,7 +72,8 @@ contains
       end if
     end if
     if (outcome%passes_itself) give_up = give_up .or. cutbacks > most_cutbacks_for_crossing
-    call note_cutback(solution%probation, solution%next_step)
+    ! that sides meet says nothing of the mesh
+    if (.not. outcome%passes_itself) call note_cutback(solution%probation, solution%next_step)
     if (on_probation .and. is_too_short(scene, solution)) then
       call refuse_mesh(scene, solution, outcome, run, error)
       return
@@ -83,6 +85,8 @@ contains
     else if (give_up .and. sides_have_met(scene, outcome, run)) then
       run%folding = outcome%crossing_group
       run%folds = scene%groups(outcome%crossing_group)%name//' passes through itself'//outcome%crossing_place
+      ! it was no fault of the length
+      solution%next_step = run%crossed_from
     else if (give_up) then
       ! resumed, it ends the same way
       solution%next_step = dt

@@ -61,8 +61,9 @@ module run_record
     integer :: folding = 0
     !> The first of the attempts at the present step had a body that has thinned to nothing.
     logical :: thins_out = .false.
-    !> Attempts at it, one after the other, in which a body passed through itself.
+    !> Attempts at it, one after the other, in which a body passed through itself, and the length of the first of them [time].
     integer :: crossings = 0
+    real(wp) :: crossed_from = 0.0_wp
     character(len=:), allocatable :: folds
     !> Of a deck with ACCURACY, but for its pilots.
     type(accuracy_plan_t), allocatable :: plan
