@@ -139,8 +139,8 @@ contains
     end associate
   end subroutine carry_one
 
-  !> Depths of the points that take over from a corner of the die within a side: what it has is along a normal of its own, and a part
-  !> of that makes no pressure (corner_contact). The contour is the part's own there, and depths are what its new points have.
+  !> Depths of the points that take over from a corner of the die within a side: what it has is along a normal of its own, and a
+  !> part of that makes no pressure (corner_contact). The contour is the part's own there, and depths are what its new points have.
   pure subroutine measure_depths(scene, g, pilot, depth, row, state)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g
