@@ -78,7 +78,8 @@ contains
   end subroutine needs_of_boundary
 
   !> Size requirements of the curvature of a die, and of its sharp corners that point to the part, where matter turns on the spot:
-  !> the smallest size at corners there, while bends have their own. They apply where a contour is near, since sizes grow with distance.
+  !> the smallest size at corners there, while bends have their own. They apply where a contour is near, since sizes grow with
+  !> distance.
   pure subroutine needs_of_die(pieces, closed, settings, limits, needs)
     type(arc_t), intent(in) :: pieces(:)   !! (npiece) in the present position of the die
     logical, intent(in) :: closed          !! the last piece ends where the first one begins
