@@ -14,7 +14,7 @@ module boundary_curves
   private
   public :: boundary_curve_t, position_t, boundary_of_loop, close_boundary, point_on, turn_at, arc_length_at, &
     position_at_arc_length, closest_position
-  public :: boundary_length, largest_gap, joint_after, joint_point, size_of_boundary
+  public :: boundary_length, is_on_one_piece, largest_gap, joint_after, joint_point, size_of_boundary
   public :: kind_end, kind_corner, kind_entry, kind_exit, kind_joint
 
   !> Kind of a joint of the contour: end of a parabola, corner where the tangent turns, point where contact begins or ends, or
@@ -68,13 +68,25 @@ contains
     allocate (boundary%arc_length(0:size(boundary%arcs)))
     boundary%arc_length(0) = 0
     do k = 1, size(boundary%arcs)
-      if (any(boundary%kinds(k) == [kind_end, kind_joint]) .and. abs(turn_at(boundary, k)) > corner_turn) &
-        boundary%kinds(k) = kind_corner
+      if (any(boundary%kinds(k) == [kind_end, kind_joint]) .and. abs(turn_at(boundary, k)) > corner_turn &
+          .and. .not. is_on_one_piece(boundary, k)) boundary%kinds(k) = kind_corner
       associate (s => boundary%arcs(k))
         boundary%arc_length(k) = boundary%arc_length(k - 1) + length_between(s, s%range(1), s%range(2))
       end associate
     end do
   end subroutine close_boundary
+
+  !> Both arcs where arc k begins lie on one piece of a die. They turn there by their depths alone, as where a side has come off the
+  !> die between a corner of it and its next node: no corner of the part, which would be kept in place of that of the die beside it.
+  pure function is_on_one_piece(boundary, k) result(yes)
+    type(boundary_curve_t), intent(in) :: boundary
+    integer, intent(in) :: k
+    logical :: yes
+
+    associate (before => boundary%arcs(modulo(k - 2, size(boundary%arcs)) + 1), behind => boundary%arcs(k))
+      yes = behind%die > 0 .and. before%die == behind%die .and. before%piece == behind%piece
+    end associate
+  end function is_on_one_piece
 
   !> Point where arc k begins [length]: a node of the part where one of the two adjacent arcs ends with a whole side.
   pure function joint_point(boundary, k) result(point)

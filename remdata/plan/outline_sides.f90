@@ -6,7 +6,8 @@
 module outline_sides
   use body_outlines, only: outline_t
   use body_seams, only: add_seam_ends, group_beside, lay_out_seams, seams_t
-  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, kind_corner, position_at_arc_length, turn_at
+  use boundary_curves, only: arc_length_at, boundary_curve_t, boundary_length, is_on_one_piece, kind_corner, &
+                             position_at_arc_length, turn_at
   use contour_divisions, only: divide_sides
   use corrected_contours, only: contour_options_t
   use curve_divisions, only: measure_density
@@ -90,6 +91,7 @@ contains
     point%boundary = number
     do k = 1, size(boundary%arcs)
       if (boundary%kinds(k) /= kind_corner .and. .not. abs(turn_at(boundary, k)) > options%corner_turn) cycle
+      if (is_on_one_piece(boundary, k)) cycle
       point%position%arc = k
       point%position%xi = boundary%arcs(k)%range(1)
       points = [points, point]

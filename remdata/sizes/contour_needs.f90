@@ -68,15 +68,18 @@ contains
     if (present(nearby)) call limit_by(slope_of(limits%gradation), nearby, limits%smallest, all)
     call grade_along(slope_of(limits%gradation), all)
     all%size = max(all%size, limits%smallest)
-    if (present(nearby) .and. limits%at_bends < limits%smallest) then
-      call limit_by(slope_of(limits%gradation), nearby, limits%at_bends, all)
-      call grade_along(slope_of(limits%gradation), all)
+    if (present(nearby)) then
+      if (limits%at_bends < limits%smallest .or. any(nearby%size < limits%smallest)) then
+        call limit_by(slope_of(limits%gradation), nearby, min(limits%at_bends, limits%at_corners), all)
+        call grade_along(slope_of(limits%gradation), all)
+      end if
     end if
     call keep_needs(limits, all, needs)
   end subroutine needs_of_boundary
 
   !> Size requirements of the curvature of a die, and of its sharp corners that point to the part, where matter turns on the spot:
-  !> the smallest size there, while bends have their own. They apply where a contour is near, since sizes grow with distance.
+  !> the smallest size at corners there, while bends have their own. They apply where a contour is near, since sizes grow with
+  !> distance.
   pure subroutine needs_of_die(pieces, closed, settings, limits, needs)
     type(arc_t), intent(in) :: pieces(:)   !! (npiece) in the present position of the die
     logical, intent(in) :: closed          !! the last piece ends where the first one begins
@@ -99,7 +102,7 @@ contains
       if (turn_between(tangent_at(pieces(k), 1.0_wp), tangent_at(pieces(next), -1.0_wp)) > -sharp) cycle
       n = n + 1
       all(n)%x = point_at(pieces(k), 1.0_wp)
-      all(n)%size = limits%smallest
+      all(n)%size = min(limits%smallest, limits%at_corners)
     end do
     call keep_needs(limits, all(:n), needs)
   end subroutine needs_of_die

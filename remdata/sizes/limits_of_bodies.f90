@@ -19,6 +19,7 @@ contains
     if (scene%remesher%smallest > 0) then
       limits%smallest = scene%remesher%smallest
       limits%at_bends = scene%remesher%smallest_at_bends
+      limits%at_corners = scene%remesher%smallest_at_corners
     end if
     if (scene%remesher%largest > 0) limits%largest = scene%remesher%largest
   end function limits_of_all
@@ -31,6 +32,9 @@ contains
 
     limits%smallest = scene%remesher%contours(body)%smallest
     limits%at_bends = limits%smallest
+    limits%at_corners = limits%smallest
+    if (scene%remesher%smallest > 0) &
+      limits%at_corners = limits%smallest*(scene%remesher%smallest_at_corners/scene%remesher%smallest)
     limits%largest = scene%remesher%contours(body)%largest
   end function limits_of_body
 

@@ -14,8 +14,8 @@ module size_windows
   type :: size_limits_t
     real(wp) :: smallest = 0.0_wp              !! [length]
     real(wp) :: largest = sqrt(huge(1.0_wp))   !! [length]
-    !> Smallest where a die bends, if that is smaller [length].
-    real(wp) :: at_bends = sqrt(huge(1.0_wp))
+    !> Smallest where a die bends, and at its sharp corners, if that is smaller [length].
+    real(wp) :: at_bends = sqrt(huge(1.0_wp)), at_corners = sqrt(huge(1.0_wp))
     !> Largest ratio of an element to its neighbour.
     real(wp) :: gradation = 1.5_wp
   end type size_limits_t
@@ -53,6 +53,7 @@ contains
     do k = 1, size(windows)
       wide%smallest = min(wide%smallest, windows(k)%box%smallest)
       wide%at_bends = min(wide%at_bends, windows(k)%box%smallest)
+      wide%at_corners = min(wide%at_corners, windows(k)%box%smallest)
       wide%largest = max(wide%largest, windows(k)%box%largest)
     end do
   end function limits_around
@@ -74,6 +75,7 @@ contains
       if (inside .and. own%largest <= windows(k)%box%largest) cycle
       own%smallest = windows(k)%box%smallest
       own%at_bends = windows(k)%box%smallest
+      own%at_corners = windows(k)%box%smallest
       own%largest = windows(k)%box%largest
       inside = .true.
     end do

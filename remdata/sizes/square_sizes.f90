@@ -70,6 +70,7 @@ contains
     integer :: i
 
     field%limits = limits
+    if (.not. any(needs%size < limits%smallest)) field%limits%at_corners = limits%smallest
     allocate (field%windows(0))
     if (present(windows)) field%windows = windows
     allocate (field%needs, source=needs)
@@ -130,8 +131,8 @@ contains
     h = min(h, on_mesh)
     h = min(h, size_by_windows(field%limits, field%windows, x, origin))
     limits = limits_at(field, x, origin)
-    ! what is smaller than the smallest size here comes from a need at a bend, on the mesh as by itself
-    limits%smallest = min(limits%smallest, limits%at_bends)
+    ! what is smaller than the smallest size here comes from a need at a bend or a corner, on the mesh as by itself
+    limits%smallest = min(limits%smallest, limits%at_bends, limits%at_corners)
     h = within(limits, h)
   end function size_at
 

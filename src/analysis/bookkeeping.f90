@@ -102,7 +102,7 @@ contains
   end subroutine book_deformable_dies
 
   !> Sum of the forces of all sides on a deformable die, each by its size: what presses on a die whose force is none, as on a ring
-  !> all around. Zero for rigid dies.
+  !> all around. Zero for rigid dies, and nothing of what a body presses on itself: that is no load (met_by_itself).
   pure function pressed_on(scene, equations, die) result(total)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
@@ -113,6 +113,7 @@ contains
     total = 0
     do g = 1, size(scene%groups)
       if (scene%groups(g)%pairs == 0 .or. scene%groups(g)%die /= die .or. scene%groups(g)%role /= role_contact) cycle
+      if (faces_itself(scene, scene%groups(g))) cycle
       n = size(equations%dofs%groups(g)%nodes, 1)
       do e = 1, size(equations%dofs%groups(g)%nodes, 2)
         m = equations%solves(1)%pattern%force_start(g) + (e - 1)*size(equations%dofs%groups(g)%dof, 1)

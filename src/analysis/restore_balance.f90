@@ -21,6 +21,7 @@ module restore_balance
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
   use newton, only: solve_step
+  use own_contact, only: met_by_itself
   use path_record, only: settle_path
   use quadrature, only: is_control_point, rule_along
   use residual_distance, only: relative_distance, work_of_correction
@@ -34,7 +35,7 @@ module restore_balance
   use vectors, only: length_of
   implicit none
   private
-  public :: balance_t, depth_change, keep_balance, restore_equilibrium
+  public :: balance_t, depth_change, forces_on_dies, keep_balance, restore_equilibrium
 
   !> What the restart reports about the remesh.
   type :: balance_t
@@ -63,7 +64,8 @@ module restore_balance
     type(totals_t) :: before, after
     !> Energy below which stresses are round-off: a body without stress is none the worse for it.
     real(wp) :: round_off = 0.0_wp
-    !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie).
+    !> Force on each pilot before (as the old mesh had it), by the pressures that were carried, and after (3, ndie); none on
+    !> a die that is its own body's (forces_on_dies).
     real(wp), allocatable :: pilot_before(:, :), pilot_carried(:, :), pilot_after(:, :)
     !> What presses on each die made of sides, sizes added up (ndie).
     real(wp), allocatable :: pressed(:)
@@ -100,7 +102,7 @@ contains
     balance%restored = .true.
     balance%after = balance%before
     balance%shape = least_shape(scene, scene%mesh%coordinates)
-    allocate (balance%pilot_before, source=solution%fields(pilot_field)%applied)
+    balance%pilot_before = forces_on_dies(scene, solution)
     allocate (balance%pilot_carried, source=balance%pilot_before)
     allocate (balance%pilot_after, source=balance%pilot_before)
     allocate (balance%pressed(size(scene%dies)), source=0.0_wp)
@@ -122,7 +124,7 @@ contains
     started = wall_seconds()
     equations%mode = mode_restore
     call take_turn(equations, displacement_field)
-    allocate (balance%pilot_before, source=solution%fields(pilot_field)%applied)
+    balance%pilot_before = forces_on_dies(scene, solution)
     ! until a part is in equilibrium the state is what was carried
     balance%after = balance%before
     balance%shape = least_shape(scene, scene%mesh%coordinates)
@@ -134,7 +136,7 @@ contains
     balance%depth_change = depth_change(scene, solution)
     call keep_pressures(scene, solution)
     call evaluate(scene, equations, solution, 0.0_wp, rest, .true., report, points_alone=.true.)
-    allocate (balance%pilot_carried, source=solution%fields(pilot_field)%applied)
+    balance%pilot_carried = forces_on_dies(scene, solution)
     if (report%status == block_done) call book_carried(scene, equations, balance%pilot_carried)
     call find_rest()
     call place_residual(scene, equations%dofs, external, equations%magnitude, rest, balance%place)
@@ -167,7 +169,7 @@ contains
                                                          balance%round_off))
     if (allocated(outcome%reason)) balance%reason = outcome%reason
     balance%motion = maxval(abs(solution%fields(displacement_field)%value))/equations%size
-    allocate (balance%pilot_after, source=solution%fields(pilot_field)%applied)
+    balance%pilot_after = forces_on_dies(scene, solution)
     allocate (balance%pressed(size(scene%dies)))
     do k = 1, size(balance%pressed)
       balance%pressed(k) = pressed_on(scene, equations, k)
@@ -218,6 +220,22 @@ contains
       end associate
     end do
   end subroutine keep_pressures
+
+  !> Force and moment on all pilots. What a body does to itself in a fold is no load of a die: toward the ground of the fold, where
+  !> its two flanks share a node, they press on each other as much as they like, for the arm of this is nothing. (Found: two flanks
+  !> at 10 degrees, six points with 160 times the yield stress, a sum of .12 to .7 of the force of the punch and back within ten
+  !> steps; new meshes changed it by .2 of that force, and the force of the punch by .0006.)
+  pure function forces_on_dies(scene, solution) result(forces)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    real(wp), allocatable :: forces(:, :)   !! (3, ndie) [force], [force*length]
+    integer :: k
+
+    allocate (forces, source=solution%fields(pilot_field)%applied)
+    do k = 1, size(scene%dies)
+      if (met_by_itself(scene, k)) forces(:, k) = 0
+    end do
+  end function forces_on_dies
 
   !> What the carried state does to the pilots of rigid dies, without their springs, as the old mesh had it; those of deformable
   !> dies stay so.

@@ -8,7 +8,7 @@ module cards_remesh
   use fields, only: displacement_field
   use kinds, only: wp
   use own_mesh_sizes, only: complete_options
-  use remesh_defaults, only: default_narrow => narrow, set_default_limits, set_default_sizes
+  use remesh_defaults, only: default_corner => corner, default_narrow => narrow, set_default_limits, set_default_sizes
   use remesher_options, only: has_contours
   use remesher_rows, only: make_sizes_finer, read_remesher_row, remesher_words
   use remesher_windows, only: read_window
@@ -21,7 +21,7 @@ module cards_remesh
   public :: read_remesh
 
   !> Rows of REMSH with limits for a new mesh, one word each, and all rows.
-  character(len=*), parameter :: limit_rows = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT CONTACT NARROW DISTRESS TIMES STROKE'
+  character(len=*), parameter :: limit_rows = 'ERROR ANGLE MIDDLE JACOB SCALED ASPECT CONTACT NARROW CORNER DISTRESS TIMES STROKE'
   character(len=*), parameter :: rows = limit_rows//' BAD LEAST WINDOW '//remesher_words
   !> The middle third of a side.
   real(wp), parameter :: middle_third = 1.0_wp/3.0_wp
@@ -156,6 +156,11 @@ contains
         rules%narrow = default_narrow
         if (cursor%more()) call cursor%real('the sides of a narrow contact over those of a new mesh', rules%narrow, lower=1.0_wp, &
                                             strict_lower=.true.)
+        if (size(draft%scene%dies) == 0) call cursor%fail('the deck has no die')
+      case ('CORNER')
+        rules%corner = default_corner
+        if (cursor%more()) call cursor%real('the length of a side in which a corner of a die is, over its length as new', &
+                                            rules%corner, lower=1.0_wp, strict_lower=.true.)
         if (size(draft%scene%dies) == 0) call cursor%fail('the deck has no die')
       case ('DISTRESS')
         call cursor%integer('the cutbacks of a step one after the other', rules%distress, lower=1)

@@ -93,7 +93,7 @@ contains
     end do
   end subroutine measure_sides
 
-  !> What was not given is taken from the deck's own mesh. A smallest size that is given holds at bends of dies too.
+  !> What was not given is taken from the deck's own mesh. A smallest size that is given holds at bends and corners of dies too.
   pure subroutine complete_options(factor, options)
     real(wp), intent(in) :: factor   !! the run has so many times the deck's elements along a line
     type(remesher_options_t), intent(inout) :: options
@@ -107,6 +107,7 @@ contains
         options%turn_at_dies = min(options%turn_at_dies, turn_at_bends*options%turn)
       end if
       if (.not. options%smallest_at_bends > 0) options%smallest_at_bends = options%smallest
+      if (.not. options%smallest_at_corners > 0) options%smallest_at_corners = options%smallest
       if (options%most_elements == 0) options%most_elements = growth*own%elements
     end associate
   end subroutine complete_options

@@ -8,7 +8,7 @@ module remesh_defaults
   use vectors, only: length_of
   implicit none
   private
-  public :: elements_at_first, area_in, facing_ratio, narrow, set_default_limits, set_default_sizes
+  public :: corner, elements_at_first, area_in, facing_ratio, narrow, set_default_limits, set_default_sizes
 
   !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
   !> (angles from 20 degrees, scaled Jacobians from 0.25, middle nodes in the middle third), and each is some steps of distortion
@@ -23,6 +23,9 @@ module remesh_defaults
   !> Sides of a narrow contact over those of a new mesh: below that contact is known to within a node or two on the one as on the
   !> other.
   real(wp), parameter :: narrow = 1.5_wp
+  !> Sides that corners of dies press into over their length as new: where they were longer the force dropped by 2 to 8 % at the
+  !> next mesh, else by 1 % (decks/can_sharp).
+  real(wp), parameter :: corner = 1.5_wp
   !> Cutbacks in a row; steps between two meshes.
   integer, parameter :: cutbacks = 4, steps = 5
 
@@ -30,6 +33,9 @@ module remesh_defaults
   integer, parameter :: elements_at_first = 150, elements_across = 4
   !> The smallest element over the largest, and elements of later meshes over those of the first.
   real(wp), parameter :: smallest_share = 0.2_wp
+  !> The same at a sharp corner of a die over elsewhere: a side that matter flows out of past a corner stays nearly straight, and
+  !> the die acts as if it were larger by what of the side lies beyond (decks/can_sharp).
+  real(wp), parameter :: corner_share = 0.5_wp
   integer, parameter :: growth = 3
   !> Elements of a body where a finer one lies on it, over those of that one. Both are known by the points of one of them, and the
   !> coarser one bends into parabolas as long as its sides: with twice the size reactions are within 0.5 % of those of meshes alike.
@@ -53,6 +59,7 @@ contains
     rules%distress = cutbacks
     if (has_dies) rules%contact = depth
     if (has_dies) rules%narrow = narrow
+    if (has_dies) rules%corner = corner
   end subroutine set_default_limits
 
   !> Sizes and number of elements of bodies that are given by their contours: squares, so many in each body, and across each that is
@@ -70,6 +77,7 @@ contains
     end do
     options%largest = maxval(own)
     options%smallest = smallest_share*minval(own)
+    options%smallest_at_corners = corner_share*options%smallest
     if (size(own) > 1) then
       options%contours%largest = own
       options%contours%smallest = min(smallest_share*own, facing_ratio*minval(own))

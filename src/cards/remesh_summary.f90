@@ -41,6 +41,8 @@ contains
         call add_limit(lines, 'contact', 'deeper by '//to_text(rules%contact)//' times the allowed penetration')
       if (rules%narrow < never) call add_limit(lines, 'narrow_contact', 'sides where a die is borne by few nodes longer by '// &
                                                to_text(rules%narrow)//' than new ones')
+      if (rules%corner < never) call add_limit(lines, 'corner_side', 'sides that corners of dies press into longer by '// &
+                                               to_text(rules%corner)//' than when new')
       if (rules%distress < huge(0)) call add_limit(lines, 'distress', to_text(rules%distress)//' cutbacks in a row')
     end associate
   end subroutine add_shape_limits
@@ -86,13 +88,15 @@ contains
     end associate
   end subroutine add_new_mesh
 
-  !> The smallest size where dies bend, if that is another.
+  !> The smallest size where dies bend and at their corners, if that is another.
   pure function bends_text(wish) result(text)
     type(remesher_options_t), intent(in) :: wish
     character(len=:), allocatable :: text
 
     text = ''
     if (wish%smallest_at_bends < wish%smallest) text = ', from '//to_text(wish%smallest_at_bends, 4)//' where dies bend'
+    if (wish%smallest_at_corners < wish%smallest) &
+      text = text//', from '//to_text(wish%smallest_at_corners, 4)//' at sharp corners of dies'
   end function bends_text
 
   subroutine add_limit(lines, name, limit)

@@ -142,6 +142,7 @@ contains
     options%smallest = options%smallest/factor
     options%largest = options%largest/factor
     options%smallest_at_bends = options%smallest_at_bends/factor
+    options%smallest_at_corners = options%smallest_at_corners/factor
     if (has_contours(options)) then
       options%contours%smallest = options%contours%smallest/factor
       options%contours%largest = options%contours%largest/factor

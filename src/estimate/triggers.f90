@@ -10,7 +10,7 @@
 !> over, cutbacks, times, strokes and cuts do not wait for the end.
 module triggers
   use acceptance, only: is_on_probation
-  use contact_quality, only: measure_misfit, misfit_t
+  use contact_quality, only: find_corner_side, measure_misfit, misfit_t
   use cuts, only: is_trim, trim_trigger, web_trigger
   use fields, only: displacement_field, pilot_field
   use kinds, only: eps, wp
@@ -47,6 +47,7 @@ contains
       allocate (others(0))
       if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, others)
       if (scene%remesh%contact < never) call find_misfits(scene, solution, others)
+      if (scene%remesh%corner < never) call find_long_sides(scene, solution, others)
       call find_narrow(scene, solution, others)
       limit = max(scene%remesh%stress_error, worse*solution%estimate%first_stress)
       ! where the mesh is due anyhow its error is a reason from the first strain on
@@ -242,6 +243,21 @@ contains
         call add(found, 'contact_corner', misfit%corner, scene%remesh%contact, g, misfit%corner_side)
     end do
   end subroutine find_misfits
+
+  !> Sides that corners of dies press into and that have grown too long.
+  pure subroutine find_long_sides(scene, solution, found)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(trigger_t), allocatable, intent(inout) :: found(:)
+    real(wp) :: growth
+    integer :: g, side
+
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
+      call find_corner_side(scene, g, solution, growth, side)
+      if (growth > scene%remesh%corner) call add(found, 'corner_side', growth, scene%remesh%corner, g, side)
+    end do
+  end subroutine find_long_sides
 
   !> A die whose contact is narrow beside the sides there, and was not so, or less, when the mesh began.
   pure subroutine find_narrow(scene, solution, found)

@@ -9,7 +9,8 @@ module own_contact
   use text, only: add_text, string_t
   implicit none
   private
-  public :: faces_itself, first_group, group_named, list_folding, passes_itself_advice, passes_itself_words, pieces_to_meet
+  public :: faces_itself, first_group, group_named, list_folding, met_by_itself, passes_itself_advice, passes_itself_words
+  public :: pieces_to_meet
   public :: thins_out_advice, thins_out_words
 
   !> Why a run ends whose body passes through itself where no contact is asked for, and what it needs.
@@ -33,6 +34,19 @@ contains
     if (.not. is_deformable(scene%dies(group%die))) return
     yes = any(scene%dies(group%die)%nodes(2, :) == group%connectivity(2, 1))
   end function faces_itself
+
+  !> Sides of a body face this die, which they are pieces of.
+  pure function met_by_itself(scene, die) result(yes)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    logical :: yes
+    integer :: g
+
+    yes = .false.
+    do g = 1, size(scene%groups)
+      if (scene%groups(g)%die == die) yes = yes .or. faces_itself(scene, scene%groups(g))
+    end do
+  end function met_by_itself
 
   !> Pieces of the die that sides of such a group may meet.
   pure subroutine pieces_to_meet(scene, group, first, may)

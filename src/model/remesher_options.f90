@@ -34,8 +34,8 @@ module remesher_options
     integer :: transfer = 1
     real(wp) :: exponent = 2.0_wp
     integer :: neighbours = 16
-    !> Sizes of elements, smallest and largest, and the smallest where dies bend [length].
-    real(wp) :: smallest = 0.0_wp, largest = 0.0_wp, smallest_at_bends = 0.0_wp
+    !> Sizes of elements, smallest and largest, and the smallest where dies bend and at their sharp corners [length].
+    real(wp) :: smallest = 0.0_wp, largest = 0.0_wp, smallest_at_bends = 0.0_wp, smallest_at_corners = 0.0_wp
     !> Error of the strains an element is made for, elements at most.
     real(wp) :: strain_error = 0.05_wp
     integer :: most_elements = 0

@@ -42,6 +42,8 @@ module remeshing
     real(wp) :: stress_error = never, contact = never
     !> Sides of a contact that is narrow beside them over those of a new mesh.
     real(wp) :: narrow = never
+    !> Length of a side that a corner of a die presses into over that when the mesh began.
+    real(wp) :: corner = never
     !> Strain of the most strained element since the mesh began from which on the error counts.
     real(wp) :: error_strain = 0.0_wp
     !> Cutbacks of a step one after the other.
@@ -93,7 +95,7 @@ contains
     logical :: yes
 
     yes = any(abs(rules%shape) < never) .or. rules%stress_error < never .or. rules%contact < never .or. rules%narrow < never &
-          .or. rules%distress < huge(0)
+          .or. rules%corner < never .or. rules%distress < huge(0)
     if (allocated(rules%times)) yes = yes .or. size(rules%times) > 0
     if (allocated(rules%strokes)) yes = yes .or. size(rules%strokes) > 0
   end function has_limit

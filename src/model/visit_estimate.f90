@@ -67,6 +67,7 @@ contains
     call visitor%derived('error_strain', of_the_deck)
     call visitor%derived('contact', of_the_deck)
     call visitor%derived('narrow', of_the_deck)
+    call visitor%derived('corner', of_the_deck)
     call visitor%derived('distress', of_the_deck)
     call visitor%derived('least_steps', of_the_deck)
     call visitor%derived('times', of_the_deck)

@@ -34,6 +34,7 @@ contains
     call visitor%member('smallest', self%smallest, kept, 'length', low=0.0_wp)
     call visitor%member('largest', self%largest, kept, 'length', low=0.0_wp)
     call visitor%member('smallest_at_bends', self%smallest_at_bends, kept, 'length', low=0.0_wp)
+    call visitor%member('smallest_at_corners', self%smallest_at_corners, kept, 'length', low=0.0_wp)
     call visitor%member('strain_error', self%strain_error, kept, '-', low=tiny(1.0_wp))
     call visitor%member('most_elements', self%most_elements, kept, low=0)
     call visitor%member('across_contact', self%across_contact, kept, low=0)

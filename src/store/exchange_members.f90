@@ -77,6 +77,8 @@ contains
 
     call require(file, 'remesher/smallest', options%smallest <= options%largest, 'is above remesher/largest')
     call require(file, 'remesher/smallest_at_bends', options%smallest_at_bends <= options%smallest, 'is above remesher/smallest')
+    call require(file, 'remesher/smallest_at_corners', options%smallest_at_corners <= options%smallest, &
+                 'is above remesher/smallest')
     do k = 1, size(options%windows)
       place = 'remesher/windows/'//to_text(k)
       call require(file, place//'/low', all(options%windows(k)%low < options%windows(k)%high), 'is not below '//place//'/high')

@@ -46,7 +46,7 @@ CYCLES = {"sizes 2": (2.0, None), "sizes 1.41": (1.41, None), "REMSH alone": (1.
 PLACES = [0.2 + 0.02 * (k + 1) for k in range(40)]
 JUMP = 0.2        # of the largest force in one step: no error of the mesh is told there
 SAVED, ENOUGH, SHARE = 0.5, 8 / 12, 2 / 3
-LIMITS = "   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   NARROW\n   DISTRESS 4\n   LEAST 5\n"   # those of REMSH alone
+LIMITS = "   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   NARROW\n   CORNER\n   DISTRESS 4\n   LEAST 5\n"   # those of REMSH alone
 ERROR = "   ERROR 0.05 0.4\n"   # and of the error
 HEAD = [f"| scene | uniform meshes: error % in s | cycles ({', '.join(CYCLES)}): error % in s | least ratio | `REMSH` alone | |", "|---|---|---|---|---|---|"]
 

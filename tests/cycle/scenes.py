@@ -96,11 +96,12 @@ def checked(name):
 
 
 def finer_deck(name, folder):
-    """The scene with elements of half the size, where dies bend and elsewhere, and the limits that REMSH alone has, as --check prints sizes and numbers."""
+    """The scene with elements of half the size, where dies bend, at their corners and elsewhere, and the limits that REMSH alone has, as --check prints sizes and numbers."""
     text = checked(name)
-    sizes = re.search(r"elements of ([-+.eE0-9]+) to ([-+.eE0-9]+), at most (\d+)(?:, from ([-+.eE0-9]+) where dies bend)?", text)
-    rows = (f"REMSH\n   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   NARROW\n   DISTRESS 4\n   LEAST 5\n   ERROR 0.05 0.4\n"
-            f"   SIZE {float(sizes[4] or sizes[1]) / 2} {float(sizes[2]) / 2}\n   COUNT {4 * int(sizes[3])}\n")
+    sizes = re.search(r"elements of ([-+.eE0-9]+) to ([-+.eE0-9]+), at most (\d+)(?:, from ([-+.eE0-9]+) where dies bend)?"
+                      r"(?:, from ([-+.eE0-9]+) at sharp corners of dies)?", text)
+    rows = (f"REMSH\n   ANGLE 15. 165.\n   MIDDLE 0.4\n   SCALED 0.2\n   ASPECT 10.\n   CONTACT 50.\n   NARROW\n   CORNER\n   DISTRESS 4\n   LEAST 5\n   ERROR 0.05 0.4\n"
+            f"   SIZE {min(float(size) for size in (sizes[1], sizes[4], sizes[5]) if size) / 2} {float(sizes[2]) / 2}\n   COUNT {4 * int(sizes[3])}\n")
     with open(deck_of(name), encoding="utf-8") as file:
         return write(os.path.join(folder, name + ".lag"), re.sub(r"^REMSH.*\n", rows, file.read(), flags=re.MULTILINE))
 

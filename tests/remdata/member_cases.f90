@@ -189,6 +189,7 @@ contains
         options%neighbours = 20
         options%smallest = 0.1_wp
         options%smallest_at_bends = 0.05_wp
+        options%smallest_at_corners = 0.04_wp
         options%turn_at_dies = 0.2_wp
         options%largest = 0.7_wp
         options%strain_error = 0.06_wp

@@ -95,13 +95,15 @@ def unasked(checks):
             summary = json.load(file)
         told = any("has met itself" in warning["text"] for warning in summary["warnings"])
         checks.that(told == (card == ""), f"{name}: what no card asks for is told", summary["warnings"])
-        found[-1].append(summary["checks"]["energy_imbalance"])
+        found[-1] += [summary["checks"]["energy_imbalance"], run.history["step_length"].min()]
     checks.small(abs(found[1][3] - found[0][3]), 2e-3, "unasked: balance of energy beside that with cards")
     off = np.abs(np.array(found[1][:3])/found[0][:3] - 1)
     checks.small(off[0], 2e-3, "unasked: force beside that with cards")
     checks.small(off[1], 1e-3, "unasked: place of a tip beside that with cards")
     checks.small(off[2], 2e-3, "unasked: work beside that with cards")
     checks.that(not any("itself" in title for title in run.history), "unasked: the columns of the history stay")
+    # the attempts without contact, each of half the length of the one before, leave no shorter steps
+    checks.that(found[1][4] > 0.2*found[0][4], "unasked: steps go on at their length", f"{found[1][4]} and {found[0][4]} with cards")
 
 
 def tube(body):
