@@ -72,7 +72,7 @@ contains
           other = boundary%arcs(k)%side
         end if
         associate (one => boundary%arcs(i), two => boundary%arcs(k))
-          call crossings_between(one, two, n, xi)
+          call crossings_between(one, two, n, xi, at_ends=.true.)
           do c = 1, n
             point = point_at(one, xi(1, c))
             ! the joint of two arcs that follow each other is no crossing

@@ -1,7 +1,8 @@
 !> Crossings of two arcs.
 !>
-!> Arcs are approximated by chords. Where chords cross, or come as near as arcs are off their chords, the crossing of the arcs is
-!> found by Newton's method.
+!> Arcs are approximated by chords; where chords cross, the crossing of the arcs is found by Newton's method. So one is missed
+!> beside an end of an arc that lies between the other one and its chord, unless it is looked for wherever chords come as near as
+!> arcs are off them.
 module arc_crossings
   use box_tree, only: box_tree_t, build_tree, items_meeting
   use kinds, only: eps, wp
@@ -83,10 +84,11 @@ contains
   end function chord_points
 
   !> Parent coordinates at which two arcs cross, in the order of the first one's chords; a joint that they share may be among them.
-  pure subroutine crossings_between(one, two, n, xi)
+  pure subroutine crossings_between(one, two, n, xi, at_ends)
     class(offset_parabola_t), intent(in) :: one, two
     integer, intent(out) :: n
     real(wp), intent(out) :: xi(:, :)   !! (2, most_crossings) on the one and on the other, the first n [-]
+    logical, intent(in), optional :: at_ends   !! those beside ends too
     real(wp) :: p(2, 0:nchord), q(2, 0:nchord)
     real(wp) :: off, found(2), same(2)
     logical :: crossed
@@ -95,7 +97,10 @@ contains
     n = 0
     p = chord_points(one)
     q = chord_points(two)
-    off = off_chords(one) + off_chords(two)
+    off = 0
+    if (present(at_ends)) then
+      if (at_ends) off = off_chords(one) + off_chords(two)
+    end if
     same = touching*[one%range(2) - one%range(1), two%range(2) - two%range(1)]
     do i = 1, nchord
       do k = 1, nchord

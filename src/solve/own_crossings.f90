@@ -101,7 +101,7 @@ contains
       associate (i => pairs(1, m), k => pairs(2, m))
         if (sides%body(k) /= sides%body(i)) cycle
         if (are_neighbours(sides%nodes(:, i), sides%nodes(:, k))) cycle
-        call crossings_between(arcs(i), arcs(k), number, xi)
+        call crossings_between(arcs(i), arcs(k), number, xi, at_ends=.true.)
         do r = 1, number
           if (.not. allocated(held)) held = nodes_in_contact(scene, solution)
           if (any(held(sides%nodes(:, i))) .or. any(held(sides%nodes(:, k)))) cycle
