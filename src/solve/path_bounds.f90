@@ -40,9 +40,9 @@ module path_bounds
   !> A step may err by the first share of the bound over the whole way, in place of the bound over its own motion, as long as all
   !> errors so far are below the second share of the bound over the way; but by no more than the third share of its own motion.
   !> Velocities turn fast where metal flows around a bend of a die, or a node comes to lie on one: there steps err by much of their
-  !> motion, however short they are, and hardly of the way. Steps above a fortieth of the way are bounded by their motion alone:
-  !> those in which a neck or a hinge forms.
-  real(wp), parameter :: of_way = 1.0_wp/40, in_sum = 0.4_wp, most_of_step = 0.3_wp
+  !> motion, however short they are, and hardly of the way. Steps above a two-hundredth of the way are bounded by their motion
+  !> alone: those in which a neck or a hinge forms, or a die is filled.
+  real(wp), parameter :: of_way = 0.005_wp, in_sum = 0.4_wp, most_of_step = 0.3_wp
 
   !> Errors of a path fall with at least this power of the step's length (with the first, or the second).
   real(wp), parameter :: least_order = 0.5_wp
@@ -201,14 +201,17 @@ contains
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt   !! [time]
     type(outcome_t), intent(inout) :: outcome
-    real(wp) :: allowed, way, room
+    real(wp) :: allowed, way, room, factor
 
-    associate (step => outcome%path, record => solution%path)
+    associate (step => outcome%path, record => solution%path, share => outcome%path%sizes(of_motion))
       if (.not. (strategy%path_bound > 0 .and. step%motion_error > 0)) return
       way = record%moved + step%motion
-      room = min(of_way*strategy%path_bound*way, in_sum*strategy%path_bound*way - record%moved_error)
-      allowed = max(strategy%path_bound, min(room/motion_scale(solution, dt, step), most_of_step))
-      call bound(strategy, record, dt, allowed, aim*allowed/step%sizes(of_motion), of_motion, 'motion', outcome)
+      room = min(of_way*strategy%path_bound*way, in_sum*strategy%path_bound*way - record%moved_error) &
+             /motion_scale(solution, dt, step)
+      allowed = max(strategy%path_bound, min(room, most_of_step))
+      ! of a longer step the way is a smaller multiple
+      factor = max(aim*strategy%path_bound/share, min(sqrt(aim*max(room, 0.0_wp)/share), aim*most_of_step/share))
+      call bound(strategy, record, dt, allowed, factor, of_motion, 'motion', outcome)
     end associate
   end subroutine bound_motion
 
