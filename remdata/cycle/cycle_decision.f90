@@ -11,6 +11,7 @@ module cycle_decision
   use cycle_table, only: way_agreed, way_anew, way_coarser, way_earlier, way_finer, way_mesher, way_old_mesh, way_transfer
   use cycle_tries, only: agreed_way, any_agreed, first_reason
   use cycle_ways, only: is_whole, next_way, old_mesh_goes_on, old_state
+  use confinement_record, only: no_room_advice, no_room_words
   use cuts, only: stage_of_cuts
   use errors, only: exit_done, exit_input, exit_machine, exit_no_convergence, exit_remesh, exit_signal
   use kinds, only: wp
@@ -207,6 +208,7 @@ contains
     if (reason /= '') tried = tried//'; the first: '//reason
     first = ''
     if (index(reason, passes_itself_words) > 0) first = passes_itself_advice//'; '
+    if (index(reason, no_room_words) > 0) first = no_room_advice//'; '
     if (is_first_mesh(s%new%old_end%facts)) then
       action = give_up(exit_no_convergence, 'no first mesh is good enough: '//tried, &
                        first//heed//'; else the contour may want other ZPNT and ZONE cards, or sizes: REMSH SIZE, TURN and COUNT')

@@ -1,6 +1,7 @@
 !> What acts in a scene: motions and loads that the deck gives, temperatures, and whether bodies answer to these.
 module acting_causes
   use contact_outlook, only: moves
+  use dies, only: is_deformable
   use fields, only: displacement_field
   use law_api, only: law_t, solid_law
   use scene, only: scene_t
@@ -74,14 +75,13 @@ contains
     end do
   end function unloaded
 
-  !> A multiplier is not zero at some time, or the scene needs none: heat acts by itself, and one without multipliers has none to be
-  !> zero.
+  !> A multiplier is not zero at some time, or the scene needs none: heat acts by itself, bodies that begin in each other press.
   pure function anything_acts(scene) result(yes)
     type(scene_t), intent(in) :: scene
     logical :: yes
     integer :: k
 
-    yes = size(scene%multipliers) == 0 .or. has_temperature(scene)
+    yes = is_warm(scene) .or. any([(is_deformable(scene%dies(k)), k=1, size(scene%dies))])
     do k = 1, size(scene%multipliers)
       yes = yes .or. maxval(abs(scene%multipliers(k)%value)) > 0
     end do

@@ -1,4 +1,5 @@
-!> Rigid dies that go through each other by the motions a deck gives them: no room is left between them for the part.
+!> Rigid dies that go through each other, or through a plane of symmetry, by the motions a deck gives them: no room is left for the
+!> part.
 !>
 !> Only surfaces that face each other over a gap at first count: a plate wider than the bore it goes into crosses the wall of
 !> that, at a right angle, and nothing is between the two.
@@ -10,7 +11,7 @@ module closing_dies
   use kinds, only: wp
   use parabolas, only: point_on, tangent_on
   use plane_vectors, only: left_of, turned
-  use scene, only: pilot_at, scene_t
+  use scene, only: pilot_at, scene_t, wall_t
   use starting_sides, only: extent_of
   use text, only: add => add_text, string_t, to_text
   use vectors, only: length_of
@@ -27,7 +28,7 @@ module closing_dies
 
 contains
 
-  !> A line for each pair of rigid dies with contact, the first instant and the place.
+  !> A line for each pair of rigid dies with contact, and for each of them and a plane of symmetry: the first instant and place.
   subroutine judge_closing(scene, warnings)
     type(scene_t), intent(in) :: scene                           !! as the deck gives it
     type(string_t), allocatable, intent(inout) :: warnings(:)    !! (nwarning) lines
@@ -46,8 +47,85 @@ contains
         if (.not. moves(scene, b) .or. moves(scene, a) .and. a < b) cycle
         call judge_pair(scene, a, b, warnings)
       end do
+      if (.not. (used(a) .and. moves(scene, a) .and. allocated(scene%walls))) cycle
+      do b = 1, size(scene%walls)
+        call judge_plane(scene, a, scene%walls(b), warnings)
+      end do
     end do
   end subroutine judge_closing
+
+  !> Places of a die from instant to instant before a plane of symmetry, opposite to the sides that are held in it: the mirror image
+  !> of the die, which is in no deck, comes to meet it there.
+  subroutine judge_plane(scene, die, wall, warnings)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    type(wall_t), intent(in) :: wall
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    logical, allocatable :: faces(:)
+    real(wp), allocatable :: height(:), before(:), places(:, :)
+    real(wp) :: time, way, pilot(3), last(3), ends(2)
+    integer :: k, at, along
+
+    along = 3 - wall%component
+    ends = [huge(ends), -huge(ends)]
+    do k = 1, size(scene%fixations)
+      associate (support => scene%fixations(k), x => scene%mesh%coordinates)
+        if (support%label /= wall%label .or. support%component /= wall%component) cycle
+        ends = [min(ends(1), minval(x(along, support%nodes))), max(ends(2), maxval(x(along, support%nodes)))]
+      end associate
+    end do
+    last = pilot_at(scene, die, scene%strategy%begins)
+    way = 0
+    do k = 0, ninstant
+      time = scene%strategy%begins + (scene%strategy%end_time - scene%strategy%begins)*k/ninstant
+      pilot = pilot_at(scene, die, time)
+      way = way + length_of(pilot(1:2) - last(1:2))
+      last = pilot
+      call look_at_plane(scene, die, wall, pilot, ends, faces, height, places)
+      if (k > 0) then
+        if (any(faces .and. before > 0 .and. height < -slight*way)) then
+          at = minloc(height, 1, faces .and. before > 0)
+          call add(warnings, 'die '//scene%dies(die)%name//' goes through the plane in which '//wall%label//' holds the part, by ' &
+                   //'its motion: no room is left for the part from about time '//to_text(time, 3)//' on, at ' &
+                   //to_text(places(1, at), 4)//' '//to_text(places(2, at), 4)//' (a shorter stroke)')
+          return
+        end if
+        where (before > 0 .and. height > 0) before = height
+      else
+        before = height
+      end if
+    end do
+  end subroutine judge_plane
+
+  !> Height of the places of a die above a plane of symmetry, and whether they face it opposite to what is held in it.
+  pure subroutine look_at_plane(scene, die, wall, pilot, ends, faces, height, places)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: die
+    type(wall_t), intent(in) :: wall
+    real(wp), intent(in) :: pilot(3)   !! x, y, angle [length and radian]
+    real(wp), intent(in) :: ends(2)    !! of the sides that are held, along the plane [length]
+    logical, allocatable, intent(out) :: faces(:)        !! (nplace*npiece)
+    real(wp), allocatable, intent(out) :: height(:)      !! (nplace*npiece) [length]
+    real(wp), allocatable, intent(out) :: places(:, :)   !! (2, nplace*npiece) [length]
+    real(wp) :: outward(2), xi
+    integer :: k, i, n, along
+
+    along = 3 - wall%component
+    associate (pieces => scene%dies(die)%pieces)
+      allocate (faces(nplace*size(pieces, 3)), height(nplace*size(pieces, 3)), places(2, nplace*size(pieces, 3)))
+      do k = 1, size(pieces, 3)
+        do i = 1, nplace
+          n = nplace*(k - 1) + i
+          xi = -1 + (2*i - 1)/real(nplace, wp)
+          places(:, n) = pilot(1:2) + turned(point_on(pieces(:, :, k), xi), pilot(3))
+          outward = turned(left_of(tangent_on(pieces(:, :, k), xi)), pilot(3))
+          height(n) = wall%side*(places(wall%component, n) - scene%mesh%coordinates(wall%component, wall%node))
+          faces(n) = wall%side*outward(wall%component) < -opposed*length_of(outward) &
+                     .and. places(along, n) > ends(1) .and. places(along, n) < ends(2)
+        end do
+      end do
+    end associate
+  end subroutine look_at_plane
 
   !> Places of die b from instant to instant before die a.
   subroutine judge_pair(scene, a, b, warnings)

@@ -6,7 +6,7 @@
 !> Where a die is only about to be filled, or has an exit, most of the work is that of the flow; what was noted while pressure was
 !> built up, as at the start of an extrusion, is dropped then.
 module confinement
-  use confinement_record, only: confinement_record_t
+  use confinement_record, only: confinement_record_t, no_room_advice
   use kinds, only: wp
   use law_api, only: law_t
   use point_volumes, only: volumes_of_points
@@ -114,8 +114,7 @@ contains
     if (record%group == 0 .or. record%group > size(scene%groups)) return
     words = scene%groups(record%group)%name//' has had hardly any room to flow since time '//to_text(record%since, 4) &
             //': dies press it together elastically, by up to '//to_text(-100*record%change, 2)//' % of its volume, with a mean ' &
-            //'pressure of '//to_text(record%over_stress, 2)//' times its von Mises stress; a cavity that is full wants less ' &
-            //'volume, a shorter stroke, or a gap for flash'
+            //'pressure of '//to_text(record%over_stress, 2)//' times its von Mises stress; '//no_room_advice
   end function confinement_words
 
   !> A line, added to the warnings of a run at its end.

@@ -65,7 +65,7 @@ contains
     end do
     call judge_expansion(scene, laws, warnings)
     if (.not. anything_acts(scene)) &
-      call add(warnings, 'nothing moves and no load acts: all multipliers (LIC) are zero at all times')
+      call add(warnings, 'nothing moves and no load acts: no multiplier (LIC) is other than zero at any time')
   end subroutine check_physics
 
   !> Warnings of the cards of a later operation, whatever form the part has then.

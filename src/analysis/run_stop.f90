@@ -1,6 +1,7 @@
 !> How a run ends: at the end of the scene, at a limit, by a signal, or because it cannot go on.
 module run_stop
   use confinement, only: confinement_words
+  use confinement_record, only: no_room_words
   use equations, only: equations_t
   use errors, only: error_t, exit_done, exit_no_convergence, exit_remesh, exit_signal, fail
   use fields, only: displacement_field, find_field
@@ -75,6 +76,7 @@ contains
       advice = advice//'; heat that jumps as a point opens (COU2DC) may leave no equilibrium to a part that shrinks away from a ' &
                //'die: '//touch_advice
     what = 'no convergence'
+    if (solution%confinement%now) what = no_room_words
     if (is_steep(scene, run%equations%laws)) advice = advice//'; friction by M has no bound by the pressure but PHI: PHI 1 ' &
       //'beside M, above which an equilibrium need not exist'
     if (outcome%thins_out) then

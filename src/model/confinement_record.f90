@@ -3,7 +3,11 @@ module confinement_record
   use kinds, only: wp
   implicit none
   private
-  public :: confinement_record_t
+  public :: confinement_record_t, no_room_words, no_room_advice
+
+  !> How the end of a run in such a part is called, and what helps.
+  character(len=*), parameter :: no_room_words = 'no convergence in a body that has hardly any room to flow', &
+                                 no_room_advice = 'a cavity that is full wants less volume, a shorter stroke, or a gap for flash'
 
   type :: confinement_record_t
     !> Group of the body; 0 where there was none.

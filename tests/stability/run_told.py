@@ -126,6 +126,12 @@ RIGHT = {"a multiplier of two operations": {"END\n": "OPERA  one\nSTOP   0.5\nOP
 BODY = {"BLOCK  billet PL8LS 4 steel\n   0. 0.   10. 0.   10. 15.   0. 15.\n   2 1.   3 1.\n":
         "BODY   billet PL8LS 4 steel\n   SEGM  0. 0.   10. 0.\n   SEGM  10. 0.   10. 15.\n   SEGM  10. 15.   0. 15.\n   SEGM  0. 15.   0. 0.\n",
         "END\n": "REMSH\nEND\n"}
+# Half a billet, pressed through the plane of symmetry that it is held in; a die that goes past the end of that, or comes up to it.
+WRONG["a die through the plane of symmetry"] = ({"1. -2.": "1. -18."}, "die upper goes through the plane in which FIXED billet.1 Y holds the part, by its motion: no room is left for the part from about time 0.8")
+RIGHT["a die up to the plane of symmetry"] = {"1. -2.": "1. -15."}
+RIGHT["a mandrel through a ring"] = {"0. 0.   10. 0.   10. 15.   0. 15.": "10. 0.   20. 0.   20. 15.   10. 15.", "SEGM  30. 15.   -5. 15.": "SEGM  10.5 40.   9.9 14.\n   SEGM  9.9 14.   -5. 14.",
+                                     "CNT2D  billet 3": "CNT2D  billet 4", "FIXED  billet 4 X": "FIXED  billet 2 X", "1. -2.": "1. -18."}
+WRONG["nothing moves"] = ({"MOVE   upper Y press\n": "", "LIC    press\n   0. 0.   1. -2.\n": "STOP   1.\n"}, "nothing moves and no load acts")
 WRONG["contour in a die"] = ({**BODY, "30. 15.   -5. 15.": "30. 14.   -5. 14."}, "begins 1 deep in die upper")
 WRONG["contour in a fillet"] = ({**WRONG["corner in a fillet"][0], **BODY}, "deep in die upper")
 WRONG["contour out of reach"] = ({**BODY, "30. 15.   -5. 15.": "30. 18.   -5. 18."}, "does not meet the part")
