@@ -1,9 +1,8 @@
 !> Length of steps by the errors that come of the path within them (path_error).
 !>
-!> The error of the motion is bounded for each step, over its motion: in sum it is no more of the whole way then. As long as the sum
-!> is far less, a short step may err by more of its own motion. The error of the stress is bounded as what has come of all steps so
-!> far, for creep forgets what was before and elastic unloading keeps it. Where that is used up a step may add its share of the time
-!> to it, or of the stress that it changes, so that the run goes on.
+!> The error of the motion is bounded for each step, over its motion: in sum it is no more of the whole way then. The error of the
+!> stress is bounded as what has come of all steps so far, for creep forgets what was before and elastic unloading keeps it. Where
+!> that is used up a step may add its share of the time to it, or of the stress that it changes, so that the run goes on.
 !>
 !> Where a step could be many times as long, a few steps after it do without an estimate, unless one is longer, flows more or bends
 !> more.
@@ -26,7 +25,7 @@ module path_bounds
   use text, only: to_text
   implicit none
   private
-  public :: bound_motion, bound_stress, judge_path
+  public :: bound_stress, judge_path
 
   !> Steps aim at this share of what is allowed, so that few are made in vain.
   real(wp), parameter :: aim = 0.7_wp
@@ -36,13 +35,6 @@ module path_bounds
 
   !> Steps without an estimate grow to no more than this many times the length up to which they may do without.
   real(wp), parameter :: growth_in_quiet = 2.0_wp
-
-  !> A step may err by the first share of the bound over the whole way, in place of the bound over its own motion, as long as all
-  !> errors so far are below the second share of the bound over the way; but by no more than the third share of its own motion.
-  !> Velocities turn fast where metal flows around a bend of a die, or a node comes to lie on one: there steps err by much of their
-  !> motion, however short they are, and hardly of the way. Steps above a two-hundredth of the way are bounded by their motion
-  !> alone: those in which a neck or a hinge forms, or a die is filled.
-  real(wp), parameter :: of_way = 0.005_wp, in_sum = 0.4_wp, most_of_step = 0.3_wp
 
   !> Errors of a path fall with at least this power of the step's length (with the first, or the second).
   real(wp), parameter :: least_order = 0.5_wp
@@ -85,7 +77,7 @@ contains
     if (solution%path%unbounded > 0) return
     if (done) then
       call find_sizes(scene%strategy, solution, dt, outcome%path)
-      call bound_motion(scene%strategy, solution, dt, outcome)
+      call bound_motion(scene%strategy, solution%path, dt, outcome)
       if (outcome%converged) call bound_stress(scene%strategy, solution, dt, outcome)
     else if (dt > scene%strategy%least_step) then
       call shorten(without_halves, 'the path within the step cannot be followed', outcome)
@@ -177,41 +169,25 @@ contains
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt   !! [time]
     type(path_step_t), intent(inout) :: step
-    real(wp) :: allowed
+    real(wp) :: scale, allowed
 
-    if (step%motion_error > 0) step%sizes(of_motion) = step%motion_error/motion_scale(solution, dt, step)
+    scale = step%motion
+    if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
+    if (step%motion_error > 0) step%sizes(of_motion) = step%motion_error/scale
     allowed = strategy%rate_bound*bound_scale(solution%path, step%stress, step%flow)
     if (allowed > 0) step%sizes(of_stress) = abs(step%stress_error)/allowed
   end subroutine find_sizes
 
-  !> What the error of the motion of a step is over: its motion, or what that is in the mean of the time, where that is more.
-  pure function motion_scale(solution, dt, step) result(scale)
-    type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: dt   !! [time]
-    type(path_step_t), intent(in) :: step
-    real(wp) :: scale   !! [length]
-
-    scale = step%motion
-    if (solution%time > 0) scale = max(scale, solution%path%moved/solution%time*dt)
-  end function motion_scale
-
-  !> The share goes with the length. What is allowed is a share of the motion of the step, or of the way of all steps.
-  subroutine bound_motion(strategy, solution, dt, outcome)
+  !> The share goes with the length.
+  subroutine bound_motion(strategy, record, dt, outcome)
     type(strategy_t), intent(in) :: strategy
-    type(solution_t), intent(in) :: solution
+    type(path_record_t), intent(in) :: record
     real(wp), intent(in) :: dt   !! [time]
     type(outcome_t), intent(inout) :: outcome
-    real(wp) :: allowed, way, room, factor
 
-    associate (step => outcome%path, record => solution%path, share => outcome%path%sizes(of_motion))
-      if (.not. (strategy%path_bound > 0 .and. step%motion_error > 0)) return
-      way = record%moved + step%motion
-      room = min(of_way*strategy%path_bound*way, in_sum*strategy%path_bound*way - record%moved_error) &
-             /motion_scale(solution, dt, step)
-      allowed = max(strategy%path_bound, min(room, most_of_step))
-      ! of a longer step the way is a smaller multiple
-      factor = max(aim*strategy%path_bound/share, min(sqrt(aim*max(room, 0.0_wp)/share), aim*most_of_step/share))
-      call bound(strategy, record, dt, allowed, factor, of_motion, 'motion', outcome)
+    associate (step => outcome%path, allowed => strategy%path_bound)
+      if (.not. (allowed > 0 .and. step%motion_error > 0)) return
+      call bound(strategy, record, dt, allowed, aim*allowed/step%sizes(of_motion), of_motion, 'motion', outcome)
     end associate
   end subroutine bound_motion
 
