@@ -2,9 +2,9 @@
 !> has turned over.
 !>
 !> Such a contour crosses itself, and no mesh resolves what is in the loop, nor does the old mesh what is between two sides of it
-!> with no more than one between them. It is cut off where the contour crosses itself: the matter has met there, and the contour
-!> goes on from one flank to the other. Where one set of sides ends in the loop and another begins, as at the corner of a billet
-!> that has folded, both end there. The volume is restored with that of the contacts.
+!> with no more than one between them, where the body lies upon itself. It is cut off where the contour crosses itself: the matter
+!> has met there, and the contour goes on from one flank to the other. Where one set of sides ends in the loop and another begins,
+!> as at the corner of a billet that has folded, both end there. The volume is restored with that of the contacts.
 module small_laps
   use arc_crossings, only: crossings_between, extent, most_crossings, touching
   use boundary_curves, only: boundary_curve_t
@@ -12,6 +12,7 @@ module small_laps
   use folded_sides, only: fold_t
   use kinds, only: wp
   use offset_parabolas, only: length_between, point_at
+  use plane_vectors, only: cross
   use short_free_sides, only: is_free, redrawn, remove_arcs
   use side_tags, only: same_supports, same_tags, side_tags_t
   use vectors, only: length_of
@@ -26,7 +27,8 @@ module small_laps
     real(wp) :: point(2) = 0.0_wp   !! where the contour crosses itself [length]
   end type loop_of_lap_t
 
-  !> Loops of so many sides of the old mesh between the two that cross are cut off, however long they are.
+  !> Loops of so many sides of the old mesh between the two that cross are cut off, however long they are, where the body lies upon
+  !> itself: not where it has thinned to nothing before a tip.
   integer, parameter :: most_between = 1
 
 contains
@@ -80,7 +82,10 @@ contains
                 <= touching*max(extent(one), extent(two))) cycle
             length = length_between(one, xi(1, c), one%range(2)) + between + length_between(two, two%range(1), xi(2, c))
             ! the outermost of loops within each other
-            if (length < lap%length .or. (length > longest .and. sides_between(i, k) > most_between)) cycle
+            if (length < lap%length) cycle
+            if (length > longest) then
+              if (sides_between(i, k) > most_between .or. .not. area_within(boundary, i, k, xi(:, c)) > 0) cycle
+            end if
             lap = loop_of_lap_t(i, k, xi(:, c), length, point)
           end do
           between = between + length_between(two, two%range(1), two%range(2))
@@ -101,6 +106,35 @@ contains
     end function sides_between
 
   end subroutine find_loop
+
+  !> Area within a loop, positive where the contour walks around it counter-clockwise, as around the body: there the body lies upon
+  !> itself.
+  pure function area_within(boundary, first, last, xi) result(area)
+    type(boundary_curve_t), intent(in) :: boundary
+    integer, intent(in) :: first, last   !! arcs that cross
+    real(wp), intent(in) :: xi(2)        !! where they do
+    real(wp) :: area                     !! [length**2]
+    integer, parameter :: parts = 8
+    real(wp) :: origin(2), from(2), to(2), range(2)
+    integer :: k, i
+
+    area = 0
+    origin = point_at(boundary%arcs(first), xi(1))
+    from = origin
+    k = first
+    do
+      range = boundary%arcs(k)%range
+      if (k == first) range(1) = xi(1)
+      if (k == last) range(2) = xi(2)
+      do i = 1, parts
+        to = point_at(boundary%arcs(k), range(1) + (range(2) - range(1))*i/parts)
+        area = area + 0.5_wp*cross(from - origin, to - origin)
+        from = to
+      end do
+      if (k == last) return
+      k = mod(k, size(boundary%arcs)) + 1
+    end do
+  end function area_within
 
   pure subroutine cut_off(lap, contacts, boundary, laps)
     type(loop_of_lap_t), intent(in) :: lap

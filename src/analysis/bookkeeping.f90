@@ -111,6 +111,7 @@ contains
     integer :: g, e, m, n
 
     total = 0
+    if (scene%dies(die)%unasked) return
     do g = 1, size(scene%groups)
       if (scene%groups(g)%pairs == 0 .or. scene%groups(g)%die /= die .or. scene%groups(g)%role /= role_contact) cycle
       if (faces_itself(scene, scene%groups(g))) cycle

@@ -183,23 +183,11 @@ contains
     type(outlook_t), intent(in) :: outlook(:)
     integer, intent(in) :: part(:), own, component
     logical :: yes
-    integer :: g
+    integer, allocatable :: facing(:)
 
-    yes = .false.
-    if (has_effect(scene, 'friction')) return
-    do g = 1, size(scene%groups)
-      associate (group => scene%groups(g))
-        if (group%die == 0 .or. group%material == 0 .or. size(group%connectivity) == 0) cycle
-        if (is_deformable(scene%dies(group%die))) then
-          ! another body, which may hold it
-          yes = .false.
-          return
-        end if
-        if (part(group%connectivity(1, 1)) /= own) cycle
-        yes = max(outlook(g)%largest_push(component), -outlook(g)%least_push(component)) <= no_component
-        if (.not. yes) return
-      end associate
-    end do
+    call list_groups_on_rigid_dies(scene, part, own, facing)
+    yes = size(facing) > 0 .and. .not. has_effect(scene, 'friction') .and. &
+          all(max(outlook(facing)%largest_push(component), -outlook(facing)%least_push(component)) <= no_component)
   end function pressed_across
 
   !> Rigid dies face the part, and all of them are free in a direction, without a spring: they and the part move in it as one.
@@ -207,24 +195,40 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: part(:), own, component
     logical :: yes
-    integer :: g
+    integer, allocatable :: facing(:)
+    integer :: k
 
-    yes = .false.
-    do g = 1, size(scene%groups)
-      associate (group => scene%groups(g))
-        if (group%die == 0 .or. group%material == 0 .or. size(group%connectivity) == 0) cycle
-        if (is_deformable(scene%dies(group%die))) then
-          ! another body, which may hold it
-          yes = .false.
-          return
-        end if
-        if (part(group%connectivity(1, 1)) /= own) cycle
-        yes = any(scene%die_forces%die == group%die .and. scene%die_forces%component == component) &
-              .and. .not. has_spring(scene, group%die, component)
-        if (.not. yes) return
+    call list_groups_on_rigid_dies(scene, part, own, facing)
+    yes = size(facing) > 0
+    do k = 1, size(facing)
+      associate (die => scene%groups(facing(k))%die)
+        yes = yes .and. any(scene%die_forces%die == die .and. scene%die_forces%component == component) &
+              .and. .not. has_spring(scene, die, component)
       end associate
     end do
   end function floats_with_dies
+
+  !> Groups of contact of the part, all with rigid dies; none where there is a contact with a body, which may hold it.
+  pure subroutine list_groups_on_rigid_dies(scene, part, own, facing)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: part(:), own
+    integer, allocatable, intent(out) :: facing(:)   !! (nfacing)
+    integer :: g
+
+    allocate (facing(0))
+    do g = 1, size(scene%groups)
+      associate (group => scene%groups(g))
+        ! groups of dies (springs, heat capacities) have no nodes
+        if (group%die == 0 .or. group%material == 0 .or. size(group%connectivity) == 0) cycle
+        if (is_deformable(scene%dies(group%die))) then
+          deallocate (facing)
+          allocate (facing(0))
+          return
+        end if
+        if (part(group%connectivity(1, 1)) == own) facing = [facing, g]
+      end associate
+    end do
+  end subroutine list_groups_on_rigid_dies
 
   !> A load on sides or in a volume that is no heat.
   pure function is_mechanical_load(group) result(yes)
