@@ -12,6 +12,7 @@ module fold_carry
   use curve_search, only: closest_opposed_point
   use interval_points, only: status_row
   use kinds, only: wp
+  use opposed_pieces, only: list_opposed_pieces
   use own_contact, only: faces_itself, pieces_to_meet
   use plane_vectors, only: right_of
   use quadrature, only: line_rule
@@ -99,6 +100,7 @@ contains
     real(wp), intent(inout) :: state(:)   !! (nstate) [unit of each component]
     type(closest_point_t) :: gap, depth
     logical :: may(size(scene%dies(group%die)%nodes, 2), 1)
+    integer :: number, pieces(size(may, 1))
     real(wp) :: phi(3), dphi(3), point(2), tangent(2), inner(2), reach
 
     call pieces_to_meet(scene, group, element, may)
@@ -108,9 +110,10 @@ contains
       tangent = matmul(x, dphi)
       inner = -right_of(tangent)
       reach = length_of(x(:, 3) - x(:, 1))
+      call list_opposed_pieces(scene%dies(group%die), x, reach, may(:, 1), number, pieces)
     end associate
-    call closest_opposed_point(scene%dies(group%die), point, inner, reach, may(:, 1), -1.0_wp, gap)
-    call closest_opposed_point(scene%dies(group%die), point, inner, reach, may(:, 1), 1.0_wp, depth)
+    call closest_opposed_point(scene%dies(group%die), point, inner, reach, pieces(:number), may(:, 1), -1.0_wp, gap)
+    call closest_opposed_point(scene%dies(group%die), point, inner, reach, pieces(:number), may(:, 1), 1.0_wp, depth)
     if (gap%piece > 0 .and. (depth%piece == 0 .or. -gap%d < depth%d)) depth = gap
     if (depth%piece == 0) return
     state(group%variables(find_variable(group%variables, 'penetration'))%first) = depth%d

@@ -55,16 +55,17 @@ contains
     if (times >= given%augmentations .or. .not. given%allowed > 0) return
     n = contact_block(has_corners(group), size(trial, 1))
     last = merge(n, 0, has_corners(group))
-    do e = 1, size(trial, 3)
-      allowed = given%allowed*side_length(scene, group%connectivity(:, e))
-      do k = 0, last, n
-        held = may_hold(group, trial, k, n)
-        changed = changed .or. any(deep(trial(k + 1:k + n, :, e)) > allowed &
-                                   .and. nint(trial(k + at_status, :, e)) /= contact_open .and. held(:, e))
+    do k = 0, last, n
+      held = may_hold(group, trial, k, n)
+      do e = 1, size(trial, 3)
+        if (changed) exit
+        allowed = given%allowed*side_length(scene, group%connectivity(:, e))
+        changed = any(deep(trial(k + 1:k + n, :, e)) > allowed .and. nint(trial(k + at_status, :, e)) /= contact_open &
+                      .and. held(:, e))
+        if (k > 0) cycle
+        changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed &
+                                   .and. (held(:, e) .or. group%pairs == 0))
       end do
-      held = .true.
-      if (group%pairs > 0) held = may_hold(group, trial, 0, n)
-      changed = changed .or. any(peaks(trial(:, :, e), group%rule, worth_augmenting*allowed) > allowed .and. held(:, e))
     end do
     if (.not. changed) return
     do k = 0, last, n

@@ -28,6 +28,7 @@ module elem_cntdf
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_open, law_t
   use met_side, only: hand_over, press_met, pressed_point_t, share_state
+  use opposed_pieces, only: list_opposed_pieces
   use own_closest_point, only: find_own_closest_point
   use own_contact, only: faces_itself, pieces_to_meet
   use pairs, only: list_pieces, pieces_in_reach
@@ -74,7 +75,8 @@ contains
     type(side_t) :: own
     type(pressed_point_t) :: pressed
     real(wp), allocatable :: xi(:), weight(:), there(:)
-    integer :: e, p, nnode, npiece, nblock, pieces(pieces_in_reach*group%rule%n)
+    integer :: e, p, nnode, npiece, nblock, nopposed, pieces(pieces_in_reach*group%rule%n)
+    integer, allocatable :: opposed(:)
     logical, allocatable :: may(:, :)
     logical :: axisym
 
@@ -82,7 +84,7 @@ contains
     nnode = size(x, 2)
     nblock = contact_block(.true., size(trial, 1))
     if (faces_itself(scene, group)) then
-      allocate (may(size(scene%dies(group%die)%nodes, 2), size(x, 3)))
+      allocate (may(size(scene%dies(group%die)%nodes, 2), size(x, 3)), opposed(size(scene%dies(group%die)%nodes, 2)))
       call pieces_to_meet(scene, group, first, may)
     end if
     pressed%n = merge(most_unknowns, most_unknowns - 3, scene%plane_state == generalised_plane_strain)
@@ -96,6 +98,9 @@ contains
         call begin_side()
         if (box_distance(die, box_of(own%x, own%du(1:6))) > own%length) cycle
         call list_pieces(die, middle(:, e), npiece, pieces)
+        if (allocated(may)) then
+          call list_opposed_pieces(die, own%x + transpose(reshape(own%du(1:6), [3, 2])), own%length, may(:, e), nopposed, opposed)
+        end if
         do p = 1, size(xi)
           call press_point(die, middle(p, e))
         end do
@@ -165,8 +170,8 @@ contains
 
       closest = closest_point_t()
       if (allocated(may)) then
-        call find_own_closest_point(scene, group, first + e - 1, die, may(:, e), pressed%point, pressed%phi, own%length, &
-                                    committed(:, p, e), nearest)
+        call find_own_closest_point(scene, group, first + e - 1, die, opposed(:nopposed), may(:, e), pressed%point, pressed%phi, &
+                                    own%length, committed(:, p, e), nearest)
       else
         call closest_facing_point(die, pressed%point%x, pressed%point%e_r, own%length, nearest)
       end if

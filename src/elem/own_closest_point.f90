@@ -33,12 +33,14 @@ module own_closest_point
 contains
 
   !> What the point had at the start of the step, or the nearest gap.
-  pure subroutine find_own_closest_point(scene, group, element, die, may, point, phi, reach, committed, closest)
+  pure subroutine find_own_closest_point(scene, group, element, die, pieces, may, point, phi, reach, committed, &
+                                         closest)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     integer, intent(in) :: element            !! whose side it is
     type(die_t), intent(in) :: die            !! at the end of the step
-    logical, intent(in) :: may(:)             !! (npiece) pieces that the side may meet
+    integer, intent(in) :: pieces(:)          !! (n) those that it may look at (list_opposed_pieces)
+    logical, intent(in) :: may(:)             !! (npiece) that the side may meet
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: phi(3)            !! functions of the side at the point [-]
     real(wp), intent(in) :: reach             !! length of the side [length]
@@ -47,7 +49,7 @@ contains
     type(closest_point_t) :: same
     integer :: piece, end
 
-    call closest_opposed_point(die, point%x, point%e_r, reach, may, -1.0_wp, closest)
+    call closest_opposed_point(die, point%x, point%e_r, reach, pieces, may, -1.0_wp, closest)
     if (closest%piece > 0) then
       if (is_own_node(closest)) closest%piece = 0
     end if
@@ -55,7 +57,7 @@ contains
     if (piece > 0) then
       call follow_from(die, point, reach, piece, committed(at_xi), same)
     else
-      call closest_opposed_point(die, point%x, point%e_r, reach, may, 1.0_wp, same)
+      call closest_opposed_point(die, point%x, point%e_r, reach, pieces, may, 1.0_wp, same)
     end if
     call take(same, piece > 0, closest)
     if (closest%piece > 0 .or. die%closed) return

@@ -25,6 +25,7 @@ module curve_search
   implicit none
   private
   public :: closest_facing_point, closest_opposed_point, closest_on_pieces, follow_closest_point, looks_at
+  public :: opposed, slack_of
 
   !> A side that faces away by less than this cosine may still lie on the die: a side that folds.
   real(wp), parameter :: facing = 0.9_wp
@@ -76,23 +77,31 @@ contains
   end subroutine closest_facing_point
 
   !> Closest point of a curve to a point of its own: on the given pieces, where they look at each other, as a gap or as a depth.
-  pure subroutine closest_opposed_point(curve, point, e_r, reach, may, sense, closest)
+  pure subroutine closest_opposed_point(curve, point, e_r, reach, pieces, may, sense, closest)
     class(piecewise_curve_t), intent(in) :: curve
-    real(wp), intent(in) :: point(2)   !! [length]
-    real(wp), intent(in) :: e_r(2)     !! inner normal of the part [-]
-    real(wp), intent(in) :: reach      !! [length]
-    logical, intent(in) :: may(:)      !! (npiece) that are looked at
-    real(wp), intent(in) :: sense      !! -1 for a gap, 1 for a depth
+    real(wp), intent(in) :: point(2)    !! [length]
+    real(wp), intent(in) :: e_r(2)      !! inner normal of the part [-]
+    real(wp), intent(in) :: reach       !! [length]
+    integer, intent(in) :: pieces(:)    !! (n) that are looked at (list_opposed_pieces)
+    logical, intent(in) :: may(:)       !! (npiece) a vertex is met where both pieces that it joins may be
+    real(wp), intent(in) :: sense       !! -1 for a gap, 1 for a depth
     type(closest_point_t), intent(out) :: closest
     type(search_t) :: search
+    real(wp) :: slack
+    integer :: i
 
+    if (size(pieces) == 0) return
     search%point = point
     search%e_r = e_r
     search%best = reach
     search%narrow = .true.
     search%sense = sense
     search%limit = opposed
-    call search_tree(curve, search, may)
+    slack = slack_of(curve, point)
+    do i = 1, size(pieces)
+      if (box_gap(curve%boxes(:, pieces(i)), [point, point]) > (search%best + slack)**2) cycle
+      call try_leaf(curve, pieces(i), search, may)
+    end do
     closest = search%closest
   end subroutine closest_opposed_point
 
@@ -148,10 +157,9 @@ contains
   end function faces
 
   !> Try all pieces that may hold a closer point, those nearest first.
-  pure subroutine search_tree(curve, search, may)
+  pure subroutine search_tree(curve, search)
     class(piecewise_curve_t), intent(in) :: curve
     type(search_t), intent(inout) :: search
-    logical, intent(in), optional :: may(:)   !! (npiece) pieces that are tried
     type(waiting_nodes_t) :: waiting
     real(wp) :: slack
     integer :: node
@@ -163,7 +171,7 @@ contains
       waiting%n = waiting%n - 1
       if (waiting%gap(waiting%n + 1) > (search%best + slack)**2) cycle
       if (node > size(curve%tree, 2)) then
-        call try_leaf(curve, node - size(curve%tree, 2), search, may)
+        call try_leaf(curve, node - size(curve%tree, 2), search)
       else
         call wait_below(curve, [search%point, search%point], node, waiting)
       end if
@@ -175,12 +183,9 @@ contains
     class(piecewise_curve_t), intent(in) :: curve
     integer, intent(in) :: piece
     type(search_t), intent(inout) :: search
-    logical, intent(in), optional :: may(:)
+    logical, intent(in), optional :: may(:)   !! (npiece) a vertex is tried where both pieces that it joins may be
     integer :: next
 
-    if (present(may)) then
-      if (.not. may(piece)) return
-    end if
     call try_piece(curve, piece, search)
     if (present(may)) then
       next = adjacent_piece(curve, piece, 1)
