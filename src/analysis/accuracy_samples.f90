@@ -13,7 +13,8 @@ module accuracy_samples
   use probes, only: probe_maximum, probe_minimum
   use run_options, only: run_options_t, stem_of
   use run_version, only: version_text
-  use scene, only: axisymmetric, is_solid, scene_t
+  use scene, only: axisymmetric, generalised_plane_strain, is_solid, scene_t
+  use sections, only: section_forced, section_loads, section_motions
   use solution, only: solution_t
   use system, only: join_path
   use text, only: add_text, string_t
@@ -26,10 +27,11 @@ module accuracy_samples
   real(wp), parameter :: hardly = 1.0e-3_wp
   !> Energies that are no quantities themselves, but tell how small a work is.
   character(len=*), parameter :: energies(3) = [character(len=14) :: 'elastic_energy', 'plastic_work', 'friction_work']
-  !> Beginnings of columns that are judged where the card names none, with the probes that are no extremes: those jump from point
-  !> to point, and grow without bound at sharp corners.
+  !> Beginnings of columns that are judged where the card names none, with the load that LOADF finds and the probes that are no
+  !> extremes: those jump from point to point, and grow without bound at sharp corners.
+  character(len=*), parameter :: of_section = 'section_'
   character(len=*), parameter :: usual(8) = [character(len=14) :: 'external_work', 'force_', 'moment_', 'displacement_', &
-                                             'rotation_', 'section_', 'temperature_', 'heat_flow_']
+                                             'rotation_', of_section, 'temperature_', 'heat_flow_']
 
 contains
 
@@ -194,7 +196,7 @@ contains
       do i = 1, size(titles)
         if (.not. chosen(i)) cycle
         do k = 1, size(titles)
-          if (.not. (chosen(k) .or. any(name_of(titles(k)%s) == energies))) cycle
+          if (.not. (chosen(k) .or. any(name_of(titles(k)%s) == energies) .or. index(titles(k)%s, of_section) == 1)) cycle
           if (unit_of(titles(k)%s) == unit_of(titles(i)%s)) chosen(i) = chosen(i) .and. scales(i) > hardly*scales(k)
         end do
       end do
@@ -231,6 +233,14 @@ contains
     integer :: k
 
     yes = any([(index(name, trim(usual(k))) == 1, k=1, size(usual))])
+    k = scene%load_factor%multiplier
+    if (k > 0) yes = yes .or. scene%multipliers(k)%name == name
+    ! what is given of the section has no error, or that of equilibrium
+    if (scene%plane_state == generalised_plane_strain) then
+      do k = 1, size(scene%section_drives)
+        yes = yes .and. name /= merge(section_loads(k)//'   ', section_motions(k), scene%section_drives(k)%kind == section_forced)
+      end do
+    end if
     ! round the axis these forces are in balance by themselves
     if (scene%plane_state == axisymmetric) yes = yes .and. index(name, 'force_x_') /= 1 .and. index(name, 'moment_') /= 1
     do k = 1, size(scene%probes)

@@ -25,7 +25,7 @@ contains
     call put('  accuracy (estimates)                                    half of it costs')
     if (closing%space) then
       words = 'stress '//percent(closing%stress)
-      if (closing%stress_hidden) words = 'stress hidden by its error: no estimate above '//percent(largest_stress)
+      if (closing%stress_hidden) words = hidden_stress()
       if (closing%stress_carried > 0) words = words//' (of it '//percent(closing%stress_carried)//' of earlier meshes)'
       if (closing%carried_unknown) words = words//' (what earlier meshes left: not followed, ESTIM)'
       if (closing%strain_known) words = words//', strain '//percent(closing%strain)
@@ -66,6 +66,7 @@ contains
 
       words = ''
       if (closing%heat_stress > 0) words = '; stress '//percent(closing%heat_stress)
+      if (closing%heat_stress > largest_stress) words = '; '//hidden_stress()
     end function stress_of_heat
 
     !> Temperatures are behind by the work of the last step.
@@ -106,6 +107,13 @@ contains
     end subroutine row
 
   end subroutine closing_lines
+
+  !> In place of an error that says no more than that it is as large as the stress.
+  pure function hidden_stress() result(words)
+    character(len=:), allocatable :: words
+
+    words = 'stress hidden by its error: no estimate above '//percent(largest_stress)
+  end function hidden_stress
 
   pure function percent(share) result(words)
     real(wp), intent(in) :: share
@@ -164,6 +172,7 @@ contains
       call json%add('largest', closing%heat_largest)
       call json%add('sum', closing%heat)
       if (closing%heat_stress > 0) call json%add('stress_pct', 100*closing%heat_stress)
+      if (closing%heat_stress > largest_stress) call json%add('stress_known', .false.)
       if (closing%heat_due > 0) call json%add('work_not_heat', closing%heat_due)
       call json%add('half_costs', closing%heat_cost)
       call json%end_object()

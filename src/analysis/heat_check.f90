@@ -8,7 +8,7 @@ module heat_check
   use dies, only: is_deformable
   use elem_weld_source, only: source_share
   use fields, only: displacement_field, field_t, find_field
-  use hardness, only: has_hardness
+  use hardness_check, only: judge_hardness
   use heat_contact_point, only: touching_still
   use isolated_bodies, only: judge_isolated
   use kinds, only: wp
@@ -18,8 +18,6 @@ module heat_check
   use solution, only: start_fields
   use state_variables, only: find_variable
   use steel_units, only: judge_units
-  use steels, only: first_diffusive, kinetics_none, last_diffusive, martensite, phase_names, prop_hardness, steel_t
-  use temperature_curves, only: is_given
   use text, only: add => add_text, string_t, to_text
   use vectors, only: length_of
   use weld_sources, only: felt_ahead, power_in_plane, share_within
@@ -221,54 +219,6 @@ contains
 
     yes = group%exchange%kind == by_convection .and. group%die == 0
   end function cools
-
-  !> A probe of the hardness of a steel that has none, or none of a phase that may form.
-  subroutine judge_hardness(scene, warnings)
-    type(scene_t), intent(in) :: scene
-    type(string_t), allocatable, intent(inout) :: warnings(:)
-    character(len=:), allocatable :: without
-    logical :: told(size(scene%materials))
-    integer :: k
-
-    told = .false.
-    do k = 1, size(scene%probes)
-      associate (probe => scene%probes(k))
-        if (probe%group == 0) cycle
-        associate (group => scene%groups(probe%group))
-          if (group%material == 0) cycle
-          if (.not. allocated(scene%materials(group%material)%steel) .or. told(group%material)) cycle
-          if (find_variable(group%variables, 'hardness') == 0) cycle
-          if (probe%component /= group%variables(find_variable(group%variables, 'hardness'))%first) cycle
-          told(group%material) = .true.
-          associate (steel => scene%materials(group%material)%steel)
-            without = phases_without(steel)
-            if (.not. has_hardness(steel)) then
-              call add(warnings, 'probe '//probe%name//': the steel '//steel%name//' has no hardness, it is 0 throughout: rows ' &
-                       //'HV of its phases, or HARDN MAYNIER with a composition (COMPO)')
-            else if (without /= '') then
-              call add(warnings, 'probe '//probe%name//': the steel '//steel%name//' has no HV of'//without//': they count as 0')
-            end if
-          end associate
-        end associate
-      end associate
-    end do
-  end subroutine judge_hardness
-
-  !> Phases that may form and have no hardness.
-  pure function phases_without(steel) result(names)
-    type(steel_t), intent(in) :: steel
-    character(len=:), allocatable :: names
-    logical :: may_form
-    integer :: i
-
-    names = ''
-    if (steel%maynier) return
-    do i = first_diffusive, last_diffusive
-      may_form = steel%kinetics(i)%kind /= kinetics_none .or. steel%cct%n > 0
-      if (may_form .and. .not. is_given(steel%properties(prop_hardness, i))) names = names//' '//trim(phase_names(i))
-    end do
-    if (steel%beta > 0 .and. .not. is_given(steel%properties(prop_hardness, martensite))) names = names//' MARTENSITE'
-  end function phases_without
 
   !> Heat to a die in a scene of heat alone: nothing moves, so what does not pass at the start never does.
   subroutine judge_heat_contact(scene, group, table, warnings)

@@ -28,19 +28,21 @@ module held_steels
 
 contains
 
-  !> To what is missing so far comes the largest share of an element that the step just accepted should have formed and has not.
-  !> Elements count by the means of their corners and of their points.
+  !> To what is missing so far comes the largest share of an element that the step just accepted should have formed and has not; no
+  !> more is missing than what the histories form more in the end than there is by now, as what forms late in a slow cooling is
+  !> there after all. Elements count by the means of their corners and of their points.
   pure subroutine note_held_steels(scene, laws, solution)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)   !! (nlaw)
     type(solution_t), intent(inout) :: solution
-    real(wp) :: zero, seconds, most
+    real(wp) :: zero, seconds, most, lacking, state(phase_count + 1)
     integer :: g, e, f
 
     f = find_field(scene%fields, 'temperature')
     if (f == 0) return
     if (.not. scene%fields(f)%declared) return
     most = 0
+    lacking = 0
     do g = 1, size(scene%groups)
       if (.not. of_histories_alone(scene, g)) cycle
       associate (group => scene%groups(g), material => scene%materials(scene%groups(g)%material), &
@@ -49,13 +51,15 @@ contains
         seconds = solution%last_step*material%values(find_parameter(laws(material%law_id), 'TIME'))
         do e = 1, size(group%connectivity, 2)
           associate (corners => group%connectivity(:ncorner, e), points => solution%groups(g)%committed(:, :, e))
+            state = state_of(group, points)
             most = max(most, missing_in(material%steel, seconds, sum(temperature(corners))/ncorner + zero, &
-                                        sum(change(corners))/ncorner, solution%held_growth, state_of(group, points)))
+                                        sum(change(corners))/ncorner, solution%held_growth, state))
+            lacking = max(lacking, most_of_histories(material%steel) - sum(state(ferrite:bainite)))
           end associate
         end do
       end associate
     end do
-    solution%held_growth = min(solution%held_growth + most, 1.0_wp)
+    solution%held_growth = min(solution%held_growth + most, lacking)
   end subroutine note_held_steels
 
   !> A group with phases of a steel whose diffusive phases form by the histories of a CCT diagram, and by nothing else.
@@ -74,6 +78,18 @@ contains
       end associate
     end associate
   end function of_histories_alone
+
+  !> What the history that forms the most has formed in the end.
+  pure function most_of_histories(steel) result(most)
+    type(steel_t), intent(in) :: steel
+    real(wp) :: most   !! [-]
+    integer :: k
+
+    most = 0
+    do k = 1, steel%cct%n
+      most = max(most, sum(steel%cct%z(:, steel%cct%first(k + 1) - 1)))
+    end do
+  end function most_of_histories
 
   !> Fractions of the phases and the size of grains of an element, means of its points.
   pure function state_of(group, points) result(state)

@@ -11,8 +11,9 @@ module cards_accuracy
   use mesh_parts, only: mesh_parts_t
   use remesher_options, only: has_contours
   use remeshing, only: never
-  use scene, only: scene_t
+  use scene, only: generalised_plane_strain, scene_t
   use scene_draft, only: close_card, draft_t, only_card, words_of
+  use sections, only: section_loads, section_motions
   use strategy, only: order_in_time
   use text, only: add_text, string_t
   implicit none
@@ -25,7 +26,8 @@ module cards_accuracy
   real(wp), parameter :: hundred = 100.0_wp
   !> Columns of the history of any scene, and of each die before its name, that may be judged.
   character(len=*), parameter :: of_scenes = 'external_work elastic_energy plastic_work friction_work'
-  character(len=*), parameter :: of_dies = 'force_x_ force_y_ moment_ displacement_x_ displacement_y_ rotation_ temperature_'
+  character(len=*), parameter :: of_dies = 'force_x_ force_y_ moment_ displacement_x_ displacement_y_ rotation_ temperature_ ' &
+                                           //'heat_flow_'
 
 contains
 
@@ -113,7 +115,7 @@ contains
     yes = any([(body_acts_on(draft%elems, draft%scene%groups(g), 'displacement'), g=1, size(draft%scene%groups))])
   end function has_motion
 
-  !> STRESS, columns of any scene, of dies, and of probes, those of other operations too.
+  !> STRESS, columns of any scene, of dies, of the section, and of LOADF and probes, those of other operations too.
   subroutine possible_names(deck, draft, names)
     type(deck_t), intent(in) :: deck
     type(draft_t), intent(in) :: draft
@@ -122,6 +124,12 @@ contains
     integer :: i, k
 
     call words_of(stress_name//' '//of_scenes, names)
+    if (draft%scene%plane_state == generalised_plane_strain) then
+      do k = 1, size(section_motions)
+        call add_text(names, trim(section_motions(k)))
+        call add_text(names, trim(section_loads(k)))
+      end do
+    end if
     call words_of(of_dies, fronts)
     do k = 1, size(draft%scene%dies)
       do i = 1, size(fronts)
@@ -129,18 +137,18 @@ contains
       end do
     end do
     do i = 1, size(deck%cards)
-      if (is_probe(deck%cards(i))) call add_text(names, deck%cards(i)%head%fields(1)%text)
+      if (names_column(deck%cards(i))) call add_text(names, deck%cards(i)%head%fields(1)%text)
     end do
   end subroutine possible_names
 
-  !> A PROBE card with a name; one of another operation has a mark before its keyword.
-  pure function is_probe(card) result(yes)
+  !> A PROBE or LOADF card with a name, which is that of a column; one of another operation has a mark before its keyword.
+  pure function names_column(card) result(yes)
     type(card_t), intent(in) :: card
     logical :: yes
 
-    yes = any(card%keyword == ['PROBE ', '-PROBE'])
+    yes = any(card%keyword == ['PROBE ', '-PROBE', 'LOADF ', '-LOADF'])
     if (yes) yes = size(card%head%fields) > 0
-  end function is_probe
+  end function names_column
 
   !> Instants at equal times, so that runs can be compared there.
   pure subroutine set_instants(scene)

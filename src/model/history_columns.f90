@@ -3,6 +3,7 @@
 module history_columns
   use dies, only: is_deformable
   use scene, only: generalised_plane_strain, scene_t
+  use sections, only: section_loads, section_motions
   use text, only: add => add_text, string_t
   implicit none
   private
@@ -46,12 +47,12 @@ contains
       call add(columns, 'rotation_'//scene%dies(k)%name//' [rad]')
     end do
     if (every .or. scene%plane_state == generalised_plane_strain) then
-      call add(columns, 'section_strain [-]')
-      call add(columns, 'section_curvature_x [1/length]')
-      call add(columns, 'section_curvature_y [1/length]')
-      call add(columns, 'section_force [force]')
-      call add(columns, 'section_moment_x [force*length]')
-      call add(columns, 'section_moment_y [force*length]')
+      do k = 1, 3
+        call add(columns, trim(section_motions(k))//trim(merge(' [-]       ', ' [1/length]', k == 1)))
+      end do
+      do k = 1, 3
+        call add(columns, trim(section_loads(k))//trim(merge(' [force]       ', ' [force*length]', k == 1)))
+      end do
     end if
     if (every .or. scene%follows_path) then
       call add(columns, 'path_error_motion [-]')

@@ -10,7 +10,7 @@ module sections
   implicit none
   private
   public :: section_drive_t, thickness_at
-  public :: section_held, section_moved, section_forced, section_names
+  public :: section_held, section_moved, section_forced, section_names, section_motions, section_loads
 
   !> What drives a component of the section: nothing moves it; its motion is given; its load is given.
   integer, parameter :: section_held = 1
@@ -18,6 +18,9 @@ module sections
   integer, parameter :: section_forced = 3
   !> Components: strain of the section, curvatures along x and y.
   character(len=2), parameter :: section_names(3) = ['E ', 'KX', 'KY']
+  !> Columns of the history: the motion of each component, and its load.
+  character(len=19), parameter :: section_motions(3) = ['section_strain     ', 'section_curvature_x', 'section_curvature_y']
+  character(len=16), parameter :: section_loads(3) = ['section_force   ', 'section_moment_x', 'section_moment_y']
 
   type :: section_drive_t
     integer :: kind = section_held

@@ -121,12 +121,12 @@ contains
     type(lag_t), intent(in) :: lag
     type(outcome_t), intent(inout) :: outcome
     type(evaluation_t) :: kept
-    type(state_error_t) :: none(size(scene%groups))
+    type(state_error_t) :: none(size(scene%groups)), found(size(scene%groups))
     real(wp), dimension(equations%dofs%ndof) :: heat, temperatures, content, all
     type(report_t) :: report
     real(wp) :: length, error, unused
     logical :: at_hand
-    integer :: now, f, d
+    integer :: now, f, d, g
 
     if (.not. (outcome%heat%estimated .and. lag%share > 0)) return
     now = equations%now
@@ -140,9 +140,16 @@ contains
       at_hand = equations%solves(equations%now)%analysed
       ! other pairs of bodies as the motion was found: the matrix has another pattern, and no factors yet
       if (.not. at_hand) then
+        ! the state is that of the turn: by now bodies have the work of this step, which becomes heat in the next one
+        do g = 1, size(scene%groups)
+          found(g)%value = solution%groups(g)%trial
+        end do
         if (two_stages) equations%stage = stage_t(share=diagonal)
         call evaluate(scene, equations, solution, dt, outcome%du, .true., report)
         equations%stage = stage_t()
+        do g = 1, size(scene%groups)
+          solution%groups(g)%trial = found(g)%value
+        end do
       end if
       call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=at_hand)
       if (.not. allocated(outcome%error)) then

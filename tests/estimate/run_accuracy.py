@@ -9,6 +9,7 @@ that take a second or two. Steps are counted in any case: they do not depend on 
 """
 import csv
 import json
+import math
 import os
 import re
 import shutil
@@ -237,6 +238,25 @@ def moments_of_dies_that_turn(checks):
         checks.that(("moment_up" in judged) == turned and "force_y_up" in judged, f"moment of a die that {'turns' if turned else 'does not turn'}", judged)
 
 
+def columns_of_section_and_load(checks):
+    """A bar bent by a moment, judged by its curvature, and by default; a tube widened, judged by the pressure that LOADF finds."""
+    bar = ("TITLE a bar bent\nSTATE GPLSTN\nSECTN E FREE\nSECTN KX FORCE 1.3E5 load\nSECTN KY HELD\nKINEM SMALL\nBLOCK bar PL8LS 4 m\n"
+           "   -10. 0. 10. 0. 10. 5. -10. 5.\n   4 1. 2 1.\nLAW m EPLA\n   200000. 0.3\n   LINEAR 300. 0.\nFIXED bar 1 Y\nFIXED POINT 0. 0. X\n"
+           "LIC load\n   0. 0. 1. 1.\nSTRAT 0.1 1.E-4 0.1 4 3\nACCURACY 2 %{}\nEND\n")
+    tube = ("TITLE a tube widened\nSTATE AXISYM\nKINEM SMALL\nBLOCK tube PL8LS 4 m\n   10. 0. 20. 0. 20. 2. 10. 2.\n   2 1. 2 1.\nLAW m EPLA\n"
+            "   200000. 0.3\n   LINEAR 300. 0.\nFIXED tube 1 3 Y\nPRES2D tube 4 3 1. p\nLOADF p POINT 10. 0. X grow\nLIC grow\n   0. 0. 1. 0.2\n"
+            "STRAT 0.1 1.E-4 0.1 5 3\nACCURACY 2 %{}\nEND\n")
+    # closed forms: M = Me (3 - (kappa_y/kappa)^2)/2 of a rectangle; R. Hill: the tube is plastic through, p = 2 k ln(b/a)
+    curvature = 300/200000/10/math.sqrt(3 - 2*1.3E5/(300*5*20**2/6))
+    pressure = 2*300/math.sqrt(3)*math.log(2)
+    for name, text, column, exact in (("bar", bar, "section_curvature_x", curvature), ("tube", tube, "p", pressure)):
+        for kind, words in (("named", f" OF {column}"), ("usual", "")):
+            history, summary, _ = call(checks, f"{name}_{kind}", text.format(words))
+            told = summary["accuracy"]["asked"]
+            checks.that(column in told["orders"] and told["expected"]["error_pct"] <= 2, f"{name}: {column} is judged, {kind}", told)
+            checks.that(abs(history[column][-1]/exact - 1) < 0.02, f"{name}: {column} within what was asked, {kind}", (history[column][-1], exact))
+
+
 def order_of_two_meshes_is_no_end(checks):
     """A beam that flows, 30 % off by the first two meshes: by order 1, which is taken of two, none would do. A third one tells."""
     text = ("TITLE a beam bent\nSTATE PLSTS 5.\nKINEM LOG\nBLOCK beam PL8LS 4 m\n   0. 0.   60. 0.   60. 6.   0. 6.\n   8 1.   2 1.\nLAW m EPLA\n   200000. 0.3\n"
@@ -301,6 +321,7 @@ def main():
         probe_beside_a_node(checks)
         none_of_supports(checks)
         moments_of_dies_that_turn(checks)
+        columns_of_section_and_load(checks)
         order_of_two_meshes_is_no_end(checks)
         steps_that_hardly_change(checks)
         no_pilot_ends(checks)

@@ -53,6 +53,25 @@ LIC    q
 STRAT  0.1 1.E-4 0.1   5 3
 END
 """
+COOLED = """TITLE  A ring that has cooled
+STATE  AXISYM
+KINEM  SMALL
+BLOCK  ring PL8LS 4 m
+   20. 0.   30. 0.   30. 6.   20. 6.
+   6 1.   2 1.
+LAW    m ELATH
+   200000. 0.3 1.2E-5
+ADDEL  ring PL8TM h BILINEAR
+LAW    h HEAT
+   30. 4.5
+START  T 520.
+FIXED  ring 1 Y
+CONVE  ring 2 H 0.5 TS 20.
+STRAT  0.5 1.E-6 50. 6 3
+STOP   1000.
+END
+"""
+
 SQUEEZED = """TITLE  A block squeezed, no heat is lost
 STATE  PLSTN
 KINEM  SMALL
@@ -254,6 +273,15 @@ class Closing(unittest.TestCase):
         self.assertIs(told["space"]["stress_known"], False)
         for text in (listing, page):
             self.assertIn("stress hidden by its error: no estimate above 100 %", text)
+
+    def test_stress_of_heat_that_its_error_hides(self):
+        """A ring that has cooled in long steps: its stress goes with what is left of the temperatures, and so does that of their error: no number."""
+        told, listing, page = self.what_is_told("cooled", COOLED)
+        self.assertGreater(told["heat"]["stress_pct"], 100)
+        self.assertIs(told["heat"]["stress_known"], False)
+        for text in (listing, page):
+            self.assertIn("stress hidden by its error: no estimate above 100 %", text)
+        self.assertIn("at the end, at most 23.2; stress hidden", listing)
 
     def test_stress_of_what_is_added_to_a_body_of_heat(self):
         """A beam that is a body with heat added to it, or a body of heat with mechanics added: the same errors."""

@@ -29,6 +29,8 @@ usage: run_heat_contact.py [-v] [-k]
   jumps as the side opens there is no equilibrium, and the message says what to do; once a step (SOLVE ONCE) too, where it is told.
 - `billet`: pressed between chilled dies and remeshed twice: temperatures of the dies and the heat that they got go on, as
   does heat of plastic work and friction, work that has not become heat yet among it.
+- `tool`: a hot billet slides over the sides of a conducting tool in long steps, so that their pairs change within steps: all work becomes
+  heat (temperatures found once, and first).
 - `layer`: a hot billet presses on a cold tool of few elements: new meshes make no heat of the steep temperatures at its face.
 """
 import glob
@@ -48,7 +50,7 @@ from patch_support import LAGAMINE, Checks, Run, np  # noqa: E402
 from remeshed import cycle, tries  # noqa: E402
 from run_coupling import call, content  # noqa: E402
 from run_exchange import STEADY, TIGHT, root  # noqa: E402
-from support import DONE, NO_CONVERGENCE, history, result_differences, said, write  # noqa: E402
+from support import DONE, NO_CONVERGENCE, history, result_differences, said, summary, write  # noqa: E402
 
 HEAD = "TITLE {0}\nSTATE {1}\nKINEM SMALL\n"
 EASY = "NORMS FORCE 1.E-10 DISPL 1.E-10\n"
@@ -675,6 +677,56 @@ END
 """
 
 
+TOOL = """TITLE  A hot billet under a conducting tool over whose sides it slides
+STATE  AXISYM
+KINEM  LOG
+BLOCK  billet PL8LS 4 hot
+   0. 0.   10. 0.   10. 12.   0. 12.
+   9 1.   4 1.
+BLOCK  tool PL8LS 4 elastic
+   0. 12.   25. 12.   25. 32.   0. 32.
+   12 1.   2 1.
+LAW    hot EPLA
+   100000. 0.3
+   LINEAR 100. 50.
+LAW    elastic ELA
+   210000. 0.3
+ADDEL  billet PL8TM heat BILINEAR
+ADDEL  tool PL8TM cold BILINEAR
+LAW    cold HEAT
+   30. 4.5
+LAW    heat HEAT
+   28. 4.9
+   QUINNEY 0.9
+START  T 1100. billet
+START  T 250. tool
+FIXED  billet 1 Y
+FIXED  billet 4 X
+FIXED  tool 4 X
+LAW    film COUL2D
+   PENETR 1.E-3   PHI 0.3
+DIE    face SIDES tool 1
+CNT2D  billet 3 2 face film
+COU2DC billet 3 2 face H 1. FRIC 1.
+MOVE   tool 3 Y press
+LIC    press
+   0. 0.   0.4 -5.   0.41 -5.
+STRAT  0.003 1.E-7 0.1   6 3
+NORMS  PATH 0 RATE 0
+END
+"""
+
+
+def tool(checks):
+    """The matrix of heat has another pattern once the motion has found other pairs: the state of the step is the same."""
+    deck, out = write(os.path.join(checks.folder, "tool.lag"), TOOL), os.path.join(checks.folder, "tool")
+    if not call(checks, deck, out):
+        return
+    columns, due = history(out), summary(out)["energy"]["heat_due"]
+    work = columns["friction_work"][-1] + 0.9*columns["plastic_work"][-1]
+    checks.small(abs((columns["heat_released"][-1] + due)/work - 1), 1e-8, "tool: heat of friction and of plastic work")
+
+
 def layer(checks):
     """What the billet loses the tool gains, over new meshes too: their volumes are 1 to 4, but for the elastic change."""
     deck, out = write(os.path.join(checks.folder, "layer.lag"), LAYER), os.path.join(checks.folder, "layer")
@@ -717,6 +769,7 @@ def main():
     newton(checks)
     shrinks(checks)
     billet(checks)
+    tool(checks)
     layer(checks)
     checks.end()
 

@@ -391,6 +391,20 @@ def told(checks):
         for words in ("bar: it begins as austenite at 0, below Ms of the steel s (300 degC)", "2 sides of elements are on both",
                       "the steel s has no hardness"):
             checks.that(sum(words in line["text"] for line in warnings) == 1, f"told: {words}", warnings)
+    # hardness by Maynier of a bearing steel, of what is there at the start; none of these where phases have HV, or nothing is beyond
+    for carbon, start, hv, beyond, unknown in ((1.0, "", "", True, False), (0.05, "", "", True, False), (0.4, "", "", False, False),
+                                               (0.4, "START PHASES PEARLITE 1.\n", "", False, True),
+                                               (1.0, "START PHASES PEARLITE 1.\n", "PHASE ALL\n   HV 300\n", False, False)):
+        with open(os.path.join(checks.folder, "hard.met"), "w") as file:
+            file.write(f"STEEL s\nSOURCE 'round numbers'\nCOMPO C {carbon} MN 0.7 SI 0.2\nLI 7\nHARDN MAYNIER\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\n"
+                       f"{hv[10:]}END\n")
+        run = Run(checks, f"hard-{carbon}-{len(start)}-{len(hv)}", "TITLE hard\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW hot META\n   STEEL hard.met s\n   ENERGY 1.\nSTART T 600.\n{start}CONVE bar 2 H 1. TS 20.\nPROBE h MEAN hardness bar\n"
+                  "STRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"]]
+            checks.that(sum(f"the steel s: C {carbon:g} (0.1 to 0.5) is beyond the mass per cent" in line for line in lines) == beyond, f"{run.name}: range told", lines)
+            checks.that(sum("has no HV of PEARLITE, which START PHASES gives" in line for line in lines) == unknown, f"{run.name}: start told", lines)
     # START in degC, ZERO for absolute temperatures
     for start, zero, cold in ((-50, 0., True), (20, 0., False), (-50, 273.15, False), (-300, 273.15, True)):
         run = Run(checks, f"radiates-{start}-{zero:g}", "TITLE radiates\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"

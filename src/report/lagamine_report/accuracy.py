@@ -14,7 +14,8 @@ ROWS: List[Tuple[str, str, Dict[str, str]]] = [
     ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
 ]
 # Words for the stress where `stress_known` is false.
-UNKNOWN = {"space": "stress hidden by its error: no estimate above 100 %", "path": "stress at least {} % (at this motion)"}
+HIDDEN = "stress hidden by its error: no estimate above 100 %"
+UNKNOWN = {"space": HIDDEN, "path": "stress at least {} % (at this motion)", "heat": HIDDEN}
 HOW = {"space": "twice the elements", "path": "shorter steps", "heat": "shorter steps"}
 
 
