@@ -1,9 +1,10 @@
 !> Change of the largest die force at the first full step on a new mesh, against what the old mesh's last steps foretell.
 !>
-!> The die is the one with the largest force at the last step of the old mesh. Its force in the last four steps is fitted by a
-!> straight line in time (least squares). The first full step is the first one that ends half a step of the old mesh, or more, after
-!> the remesh: what is shorter has hardly left the equilibrium of the restart. tests/cycle/force_changes.py does the same for all
-!> steps of a run. Steps of several operations foretell nothing: each has forces of its own.
+!> The die is the rigid one with the largest force at the last step of the old mesh: a die of sides may be the body itself, whose
+!> force says how it folds and not how it is formed; it is taken where no die is rigid. The force in the last four steps is fitted
+!> by a straight line in time (least squares). The first full step is the first one that ends half a step of the old mesh, or more,
+!> after the remesh: what is shorter has hardly left the equilibrium of the restart. tests/cycle/force_changes.py does the same for
+!> all steps of a run. Steps of several operations foretell nothing: each has forces of its own.
 module first_step_force
   use kinds, only: wp
   implicit none
@@ -16,6 +17,8 @@ module first_step_force
   real(wp), parameter :: full_step = 0.5_wp
   !> Below this share of the largest force of the run so far a force says nothing about the mesh.
   real(wp), parameter :: least_share = 0.2_wp
+  !> The column of a force on a die begins so.
+  character(len=*), parameter :: along = 'force_x_'
 
 contains
 
@@ -107,18 +110,28 @@ contains
     next = line + length + 1
   end subroutine next_line
 
-  !> Columns of the time, the step, and of both forces of each die, in this order; none where one is missing.
+  !> Columns of the time, the step, and of both forces of each rigid die, in this order, of every die where none is rigid; none
+  !> where one is missing. A die of sides has no columns of motion (history_columns).
   pure subroutine find_columns(heading, columns)
     character(len=*), intent(in) :: heading
     integer, allocatable, intent(out) :: columns(:)
+    integer, allocatable :: of_sides(:)
+    character(len=:), allocatable :: title
     integer :: k
 
-    allocate (columns(0))
+    allocate (columns(0), of_sides(0))
     if (index(cell(heading, 1), 'time ') /= 1 .or. index(cell(heading, 2), 'step ') /= 1) return
     columns = [1, 2]
     do k = 3, number_of_cells(heading) - 1
-      if (index(cell(heading, k), 'force_x_') == 1 .and. index(cell(heading, k + 1), 'force_y_') == 1) columns = [columns, k, k + 1]
+      title = cell(heading, k)
+      if (index(title, along) /= 1 .or. index(cell(heading, k + 1), 'force_y_') /= 1) cycle
+      if (index(heading, ',displacement_x_'//title(len(along) + 1:index(title//' [', ' [') - 1)//' [') > 0) then
+        columns = [columns, k, k + 1]
+      else
+        of_sides = [of_sides, k, k + 1]
+      end if
     end do
+    if (size(columns) == 2) columns = [columns, of_sides]
   end subroutine find_columns
 
   !> What stands in the column of the operation, if there is one.

@@ -3,8 +3,8 @@
 
 usage: force_changes.py [--each] DIR...     DIR: results of lagacycle; --each prints every remesh
 
-The force is foretold by the straight line in time through the last four steps (least squares), of the die that has the largest
-force then. At a remesh these are the last steps of the old mesh, and it is compared at the first full step on the new one: the
+The force is foretold by the straight line in time through the last four steps (least squares), of the rigid die that has the
+largest force then; of a die of sides, which may be the body itself, where none is rigid. At a remesh these are the last steps of the old mesh, and it is compared at the first full step on the new one: the
 first that ends half a step of the old mesh or more after the remesh. An ordinary step is one on the same mesh as the four before
 it, and at least half as long. Where the force before or after is below a fifth of the largest in the run it is left out. The column
 `first_step_force_change` of cycle.csv is the same, with the largest in the run so far (remdata/cycle/first_step_force.f90).
@@ -24,7 +24,9 @@ class Forces:
         with open(os.path.join(out, "history.csv"), newline="", encoding="utf-8") as file:
             head, *rows = list(csv.reader(file))
         names = [title.partition(" [")[0] for title in head]
-        self.dies = [name[len("force_x_"):] for name in names if name.startswith("force_x_")]
+        dies = [name[len("force_x_"):] for name in names if name.startswith("force_x_")]
+        # a die of sides has no columns of motion
+        self.dies = [die for die in dies if "displacement_x_" + die in names] or dies
         self.time = [float(row[names.index("time")]) for row in rows]
         self.step = [int(row[names.index("step")]) for row in rows]
         places = [(names.index("force_x_" + die), names.index("force_y_" + die)) for die in self.dies]
