@@ -107,8 +107,8 @@ contains
     closing%heat_largest = solution%heat%error_largest
     closing%space_steps = solution%heat%space_steps
     if (closing%warm) closing%space_cost = cost_of_elements(seconds_by_task(equations%timers), 2.0_wp)
-    closing%space_now = solution%heat%space_now
     ! above the range of temperatures nothing is known of the place
+    closing%space_now = min(solution%heat%space_now, solution%heat%hottest - solution%heat%coldest)
     closing%space_largest = min(solution%heat%space_largest, solution%heat%hottest - solution%heat%coldest)
     closing%space_mean = solution%heat%space_mean
     closing%space_mean_largest = solution%heat%space_mean_largest

@@ -123,8 +123,8 @@ contains
     if (solution%unstable_steps > 0) call add_text(warnings, 'equilibria are not stable in '//to_text(solution%unstable_steps) &
       //' of '//to_text(solution%step)//' steps, first at time '//to_text(solution%unstable_from, 6)//': a perfect part stays ' &
       //'in them, any other buckles or necks (move nodes by a thousandth of the thickness to see how)')
-    call warn_of_coarse_heat(solution, warnings)
     if (run%exit_code /= exit_done) return
+    call warn_of_coarse_heat(solution, warnings)
     call warn_of_webs(scene, solution, warnings)
     call warn_of_folds(scene, warnings)
     call warn_of_thinned_sheets(scene, solution, warnings)

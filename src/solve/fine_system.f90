@@ -366,13 +366,20 @@ contains
     type(fine_system_t), intent(in) :: system
     real(wp), intent(in) :: t(:)      !! (nnode) [temperature]
     real(wp) :: flow(size(t))         !! [power]
-    integer :: e
+    real(wp) :: of_element(9), t_at
+    integer :: nodes(9), e, j
 
     flow = system%exchange*t
     do e = 1, fine%nelement
-      associate (nodes => fine%nodes(:, e))
-        flow(nodes) = flow(nodes) + matmul(system%flow(:, :, e), t(nodes))
-      end associate
+      nodes = fine%nodes(:, e)
+      of_element = 0
+      do j = 1, 9
+        t_at = t(nodes(j))
+        of_element = of_element + system%flow(1:9, j, e)*t_at
+      end do
+      do j = 1, 9
+        flow(nodes(j)) = flow(nodes(j)) + of_element(j)
+      end do
     end do
   end function flow_of
 
