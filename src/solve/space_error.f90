@@ -26,6 +26,7 @@ module space_error
   use heat_stages, only: in_two_stages
   use heat_record, only: finer_share
   use kinds, only: wp
+  use linear_solver, only: has_factors
   use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t
@@ -211,6 +212,8 @@ contains
     residual = free - of_difference_in_step(d)
     do k = 1, 2*relaxations + 1
       if (k == relaxations + 1) then
+        ! nothing has been solved for yet: all is at rest
+        if (.not. (equations%solves(equations%now)%analysed .and. has_factors(equations%solves(equations%now)%solver))) cycle
         associate (number => equations%dofs%fields(field)%number)
           call to_unknowns(number, to_corners(equations%fine, residual)/system%stiffened, at_corners)
           call solve_correction(equations, at_corners, unknowns, error, at_hand=.true.)
