@@ -105,7 +105,7 @@ contains
     real(wp), allocatable :: from(:, :), to(:, :)
     real(wp) :: farthest
     integer :: f, k, n, pass
-    logical :: has_errors
+    logical :: has_errors, is_followed
 
     n = 2
     do f = 1, size(before%fields)
@@ -113,6 +113,8 @@ contains
     end do
     has_errors = size(before%heat%temperature_error) == size(moved, 2) .and. size(after%heat%temperature_error) == size(material)
     if (has_errors) n = n + 1
+    is_followed = size(before%heat%finer) > size(moved, 2) .and. size(after%heat%finer) > size(material)
+    if (is_followed) n = n + 1
     allocate (from(n, size(moved, 2)), to(n, size(material)))
     from(1:2, :) = old%mesh%origin
     do pass = 1, 2
@@ -132,8 +134,13 @@ contains
         end associate
       end do
       if (has_errors) then
-        if (pass == 1) from(n + 1:, :) = errors_at_nodes(old, before)
+        if (pass == 1) from(n + 1:n + 1, :) = errors_at_nodes(old, before)
         if (pass == 2) after%heat%temperature_error = to(n + 1, :)
+        n = n + 1
+      end if
+      if (is_followed) then
+        if (pass == 1) from(n + 1, :) = before%heat%finer(:size(moved, 2))
+        if (pass == 2) call take_finer(new, to(n + 1, :), after%heat%finer)
       end if
       if (pass == 2) exit
       call carry_at_nodes(mesh, from, new%mesh%coordinates, material, options%outside, to, farthest, error)
@@ -164,6 +171,26 @@ contains
     end function is_carried
 
   end subroutine carry_nodes
+
+  !> Temperatures that a finer mesh has more, at the nodes of the new mesh and at the centres of its elements (space_error).
+  pure subroutine take_finer(scene, at_nodes, finer)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: at_nodes(:)     !! (nnode) [temperature]
+    real(wp), intent(inout) :: finer(:)     !! (nnode + nelem) [temperature]
+    integer :: g, e, n
+
+    n = size(at_nodes)
+    finer(:n) = at_nodes
+    do g = 1, size(scene%groups)
+      if (.not. is_solid(scene%groups(g))) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        n = n + 1
+        associate (nodes => scene%groups(g)%connectivity(:, e))
+          finer(n) = 0.5_wp*sum(at_nodes(nodes(5:8))) - 0.25_wp*sum(at_nodes(nodes(1:4)))
+        end associate
+      end do
+    end do
+  end subroutine take_finer
 
   !> Errors of the temperatures in time, at middle nodes too where temperatures stand on corners.
   pure function errors_at_nodes(scene, solution) result(errors)

@@ -22,6 +22,7 @@ module accept_step
   use resting_bodies, only: work_of_drag
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
+  use space_error, only: follow_space_error
   use spring_check, only: has_body_springs
   use step_outcome, only: outcome_t
   use text, only: to_text
@@ -59,6 +60,8 @@ contains
     call book_reactions(scene, equations, solution%time + dt, solution%fields)
     call book_heat(scene, equations, dt, solution)
     call book_heat_flows(scene, equations, solution)
+    call follow_space_error(scene, equations, solution, dt, outcome, error)
+    if (allocated(error)) return
     call note_heat_step(outcome%heat, solution%heat)
     call note_path_step(outcome%path, dt, solution%time + dt, solution%path)
     if (allocated(outcome%heat%phases)) then

@@ -6,6 +6,7 @@
 !>   Num. Meth. Engng 33 (1992) 1331-1364; tests/estimate), so twice as many elements halve it. Loops over elements take twice the
 !>   time then, those over sides of contact sqrt(2), a factorisation 2^(3/2) (nested dissection: A. George, SIAM J. Num. Anal. 10
 !>   (1973) 345-363). Where a corner is singular the order is less and uniform elements cost more.
+!>   So do twice as many elements the error of temperatures on corners, which is of order 2 too.
 !> - Time: errors that come of the path within steps are of order 1 in sum; those of heat of order 1, or 2 (TR-BDF2, and
 !>   theta = 1/2). Seconds go with the number of steps, at the same iterations a step.
 module closing_facts
@@ -57,6 +58,10 @@ module closing_facts
     logical :: warm = .false.
     integer :: heat_steps = 0
     real(wp) :: heat = 0.0_wp, heat_now = 0.0_wp, heat_largest = 0.0_wp, heat_cost = 2.0_wp
+    !> Errors of temperatures in space (space_error): the largest at the end and at any time, and the same in the mean square of the
+    !> volume [temperature]; in how many steps they were followed, 0 where temperatures stand on 8 nodes.
+    integer :: space_steps = 0
+    real(wp) :: space_now = 0.0_wp, space_largest = 0.0_wp, space_mean = 0.0_wp, space_mean_largest = 0.0_wp
     !> What the plastic work of the last step would warm the bodies by that has not become heat (SOLVE ONCE) [temperature].
     real(wp) :: heat_due = 0.0_wp
     !> Error of the stress that the errors of temperatures make, where no law flows.
@@ -100,6 +105,13 @@ contains
     closing%heat = solution%heat%error_sum
     closing%heat_now = solution%heat%error_now
     closing%heat_largest = solution%heat%error_largest
+    closing%space_steps = solution%heat%space_steps
+    if (closing%warm) closing%space_cost = cost_of_elements(seconds_by_task(equations%timers), 2.0_wp)
+    ! above the range of temperatures nothing is known of the place
+    closing%space_now = min(solution%heat%space_now, solution%heat%hottest - solution%heat%coldest)
+    closing%space_largest = min(solution%heat%space_largest, solution%heat%hottest - solution%heat%coldest)
+    closing%space_mean = solution%heat%space_mean
+    closing%space_mean_largest = solution%heat%space_mean_largest
     if (solution%work%elastic > energy_without_strain(scene, equations, volume)) closing%heat_stress = solution%heat%stress_error
     closing%heat_due = pending_temperature(scene, equations%laws, equations%drivers, solution)
     closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))

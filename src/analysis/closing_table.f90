@@ -33,6 +33,13 @@ contains
       if (closing%meshes > 1) call row('', on_all_meshes(), to_text(sum(closing%seconds), 3)//' s of processor in all, ' &
         //to_text(closing%seconds(remesher_task), 3)//' s of the remesher')
     end if
+    if (closing%space_steps > 0) then
+      call row('in space', 'heat: '//to_text(closing%space_now, 3)//' [temperature] at the end, at most ' &
+               //to_text(closing%space_largest, 3)//' (mean square '//to_text(closing%space_mean_largest, 3)//')', &
+               times(closing%space_cost)//' the time: twice the elements')
+    else if (closing%warm) then
+      call row('in space', 'heat: not estimated (temperatures of 8 nodes)', '')
+    end if
     without_heat = closing%warm .and. closing%heat_steps == 0
     if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
     if (closing%path) &
@@ -175,6 +182,15 @@ contains
       if (closing%heat_stress > largest_stress) call json%add('stress_known', .false.)
       if (closing%heat_due > 0) call json%add('work_not_heat', closing%heat_due)
       call json%add('half_costs', closing%heat_cost)
+      call json%end_object()
+    end if
+    if (closing%space_steps > 0) then
+      call json%begin_object('heat_space')
+      call json%add('end', closing%space_now)
+      call json%add('largest', closing%space_largest)
+      call json%add('mean_end', closing%space_mean)
+      call json%add('mean_largest', closing%space_mean_largest)
+      call json%add('half_costs', closing%space_cost)
       call json%end_object()
     end if
     if (closing%contact) then

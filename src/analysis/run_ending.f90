@@ -6,6 +6,7 @@ module run_ending
   use accuracy_samples, only: add_cost, read_sample
   use blas, only: blas_build, blas_core_name
   use closing_facts, only: close_cycle, close_run
+  use coarse_heat, only: warn_of_coarse_heat
   use confinement, only: warn_of_confinement
   use cost_file, only: cost_t
   use crossed_bodies, only: warn_of_crossed_bodies
@@ -123,6 +124,7 @@ contains
       //' of '//to_text(solution%step)//' steps, first at time '//to_text(solution%unstable_from, 6)//': a perfect part stays ' &
       //'in them, any other buckles or necks (move nodes by a thousandth of the thickness to see how)')
     if (run%exit_code /= exit_done) return
+    call warn_of_coarse_heat(solution, warnings)
     call warn_of_webs(scene, solution, warnings)
     call warn_of_folds(scene, warnings)
     call warn_of_thinned_sheets(scene, solution, warnings)

@@ -4,7 +4,11 @@ module heat_record
   use path_record, only: state_error_t
   implicit none
   private
-  public :: heat_record_t, heat_step_t, note_heat_step
+  public :: finer_share, heat_record_t, heat_step_t, note_heat_step
+
+  !> Temperatures on corners err so many times what those of a mesh twice as fine are more: errors are of order 2 in the size of
+  !> elements (L.F. Richardson, Phil. Trans. R. Soc. A 210 (1911) 307-357).
+  real(wp), parameter :: finer_share = 4.0_wp/3
 
   type :: heat_step_t
     !> Its error was estimated; the estimate, of the heat content over the least heat capacity in the mean square of the volume; it
@@ -19,6 +23,8 @@ module heat_record
     real(wp), allocatable :: temperature_error(:)
     !> Errors of the states of points with kinetics at its end (heat_error; ngroup); not allocated where they are not known.
     type(state_error_t), allocatable :: phases(:)
+    !> Motion of the unknowns by which heat flows in a step of two stages, as a mean (ndof); not allocated in others [unknown].
+    real(wp), allocatable :: mean(:)
     !> Where no law flows, at the end of a run: error of the stress that comes of them, over the stress.
     real(wp) :: stress_error = 0.0_wp
     logical :: above = .false.
@@ -43,6 +49,14 @@ module heat_record
     real(wp) :: error_of_mesh = 0.0_wp, error_now = 0.0_wp, error_largest = 0.0_wp
     !> Error of the stress that they make at the end, over the stress, where no law flows.
     real(wp) :: stress_error = 0.0_wp
+    !> Temperatures of a mesh twice as fine less those of this one, and the heat contents (space_error): of the nodes and of the
+    !> centres of all elements (nnode + nelem), of none where they are not followed [temperature], [energy].
+    real(wp), allocatable :: finer(:), finer_content(:)
+    !> Steps in which the error in space was followed; its largest size now and so far, and in the mean square of the volume
+    !> [temperature]; when the largest of the latter was [time]. Least and largest temperature so far.
+    integer :: space_steps = 0
+    real(wp) :: space_now = 0.0_wp, space_largest = 0.0_wp, space_mean = 0.0_wp, space_mean_largest = 0.0_wp, space_time = 0.0_wp
+    real(wp) :: coldest = 0.0_wp, hottest = 0.0_wp
     !> Attempts shortened by their error; steps of the least length that are above it.
     integer :: shortened = 0, above = 0
     !> Steps with temperatures beyond those that can be there, and the farthest [temperature]; steps made again for that.

@@ -2,7 +2,8 @@
 module solution
   use acceptance, only: probation_t
   use cuts, only: cut_record_t
-  use fields, only: displacement_field, field_t, find_field, on_nodes, on_pilots, pilot_field, section_field, start_field
+  use fields, only: displacement_field, field_t, find_field, has_corners_only, on_nodes, on_pilots, pilot_field, section_field, &
+                    start_field
   use confinement_record, only: confinement_record_t
   use heat_record, only: heat_record_t
   use kinds, only: wp
@@ -13,7 +14,7 @@ module solution
   use path_record, only: path_record_t, start_path
   use remesher_options, only: number_of_cuts
   use remeshing, only: estimate_t
-  use scene, only: group_t, is_solid, role_body, role_second, scene_t
+  use scene, only: group_t, is_solid, role_body, role_second, scene_t, solid_elements
   use state_variables, only: find_variable, total_components
   use work_books, only: work_t
   implicit none
@@ -125,7 +126,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(out) :: solution
     real(wp), intent(in), optional :: time   !! at which the scene begins, 0 where it is not given [time]
-    integer :: f, g, v, c, n, npoint, nsolid, nheated, nwarm
+    integer :: f, g, v, c, n, npoint, nsolid, nheated, nwarm, nfiner
 
     if (present(time)) solution%time = time
     call start_fields(scene, solution%time, solution%fields)
@@ -140,6 +141,14 @@ contains
     if (f > 0) nwarm = merge(size(scene%dies), 0, scene%fields(f)%declared)
     allocate (solution%heat%content_error(nheated), solution%heat%temperature_error(nheated), solution%heat%die_error(nwarm), &
               source=0.0_wp)
+    f = find_field(scene%fields, 'temperature')
+    nfiner = 0
+    if (f > 0) then
+      if (scene%fields(f)%declared .and. has_corners_only(scene%fields(f)) .and. .not. scene%fields(f)%given) then
+        nfiner = nheated + solid_elements(scene)
+      end if
+    end if
+    allocate (solution%heat%finer(nfiner), solution%heat%finer_content(nfiner), source=0.0_wp)
     allocate (solution%groups(size(scene%groups)))
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g), state => solution%groups(g))

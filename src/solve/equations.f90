@@ -7,6 +7,7 @@ module equations
   use elem_api, only: elem_t, mode_advance
   use element_loop, only: element_buffers_t
   use fields, only: find_field
+  use fine_mesh_data, only: fine_mesh_t
   use kinds, only: wp
   use kinematics_api, only: kinematics_t
   use law_api, only: law_t
@@ -107,6 +108,8 @@ module equations
     logical, allocatable :: is_load(:)
     !> Drivers of the laws at the points of the groups.
     type(drivers_t), allocatable :: drivers(:)
+    !> The mesh twice as fine, where temperatures are followed there (space_error).
+    type(fine_mesh_t) :: fine
     !> Diagonal of the box around the mesh [length].
     real(wp) :: size = 0.0_wp
   end type equations_t

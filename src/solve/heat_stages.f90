@@ -242,6 +242,7 @@ contains
     kept%force = merge(external + diagonal*(kept%force + left - external), kept%force, equations%solves(equations%now)%is_own)
     call estimate_error(scene, equations, solution, dt, (matmul(g, error_weights) + heat/dt)/diagonal, &
                         in_sum(erred, mean)/diagonal, g(:, 2), .true., whole, outcome)
+    outcome%heat%mean = weight*first%du + diagonal*outcome%du
     call return_to(kept, equations)
   end subroutine solve_two_stages
 

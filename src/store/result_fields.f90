@@ -2,6 +2,7 @@
 module result_fields
   use fields, only: field_t
   use hdf5_file, only: hdf5_file_t
+  use heat_record, only: finer_share
   use kinds, only: wp
   use nodal_fields, only: list_nodal_fields, nodal_field
   use quadrature, only: square_rule
@@ -75,6 +76,9 @@ contains
       call nodal_field(scene, solution, names(k)%s, at)
       call put_scalar(file, names(k)%s, at, unit_of(scene, names(k)%s), grid)
     end do
+    if (solution%heat%space_steps == 0) return
+    at = finer_share*solution%heat%finer(:size(scene%mesh%coordinates, 2))
+    call put_scalar(file, 'error_temperature', at, 'temperature', grid)
   end subroutine put_nodal_fields
 
   !> Unit of a component of the state of a body; that of von Mises' stress, which is none.

@@ -9,6 +9,7 @@ from .words import brief
 # Of `accuracy` in summary.json: entry, where, numbers with their words.
 ROWS: List[Tuple[str, str, Dict[str, str]]] = [
     ("space", "in space", {"stress_pct": "stress {} %", "strain_pct": "strain {} %"}),
+    ("heat_space", "in space, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "mean_largest": "{} in the mean square"}),
     ("path", "in time, by the path within steps", {"motion_pct": "motion {} % in sum", "stress_pct": "stress {} % at the end"}),
     ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "stress_pct": "stress {} %", "work_not_heat": "{} behind the work (SOLVE)"}),
     ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
@@ -16,7 +17,7 @@ ROWS: List[Tuple[str, str, Dict[str, str]]] = [
 # Words for the stress where `stress_known` is false.
 HIDDEN = "stress hidden by its error: no estimate above 100 %"
 UNKNOWN = {"space": HIDDEN, "path": "stress at least {} % (at this motion)", "heat": HIDDEN}
-HOW = {"space": "twice the elements", "path": "shorter steps", "heat": "shorter steps"}
+HOW = {"space": "twice the elements", "heat_space": "twice the elements", "path": "shorter steps", "heat": "shorter steps"}
 
 
 def accuracy_section(run: Run) -> Sections:

@@ -1,0 +1,308 @@
+!> Error of temperatures in space: those of a mesh twice as fine less those of the mesh, followed through the run, without solving
+!> on it.
+!>
+!> Temperatures on corners err with the square of the size of elements, so they err 4/3 of this difference (L.F. Richardson, Phil.
+!> Trans. R. Soc. A 210 (1911) 307-357). The difference d obeys the balance of heat of the fine mesh with what the temperatures of
+!> the mesh leave unbalanced there as its source, r (hierarchical error estimate: R.E. Bank, R.K. Smith, SIAM J. Numer. Anal. 30
+!> (1993) 921-935; of parabolic equations S. Adjerid, J.E. Flaherty, Comput. Meth. Appl. Mech. Engng 55 (1986) 3-26), so that what
+!> came in the first instants of a quench, in a layer thinner than an element, is conducted and dies away as temperatures do. By
+!> implicit Euler, with C the capacity, K the flows of the fine mesh,
+!>   (C/dt + K) d1 = C d0/dt + r;
+!> in a step of TR-BDF2 in two stages of the length D dt (SDIRK2: R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006-1021), which
+!> have the matrix of the step. Each is solved by one cycle of two grids (W. Hackbusch, Multi-Grid Methods and Applications, 1985):
+!> relaxation on the fine one (A.H. Baker et al., SIAM J. Sci. Comput. 33 (2011) 2864-2887: by the sizes of the rows, which
+!> converges at any step), correction by the factors at hand of the mesh itself, relaxation. It begins with the difference of the
+!> stage before, so little is left of what a cycle leaves.
+module space_error
+  use corrections, only: solve_correction
+  use equations, only: equations_t, take_turn
+  use errors, only: error_t
+  use fields, only: find_field, has_corners_only
+  use fine_mesh, only: make_fine_mesh, place_fine_mesh
+  use fine_mesh_data, only: fine_mesh_t
+  use fine_system, only: add_bodies, add_loads, by_tables, chord_capacities, diagonal_of_flow, fine_system_t, &
+                         flow_of, start_system, to_corners, to_nodes
+  use heat_error, only: diagonal
+  use heat_stages, only: in_two_stages
+  use heat_record, only: finer_share
+  use kinds, only: wp
+  use linear_solver, only: has_factors
+  use scene, only: scene_t
+  use solution, only: solution_t
+  use step_outcome, only: outcome_t
+  implicit none
+  private
+  public :: follow_space_error
+
+  !> Relaxations before and after the correction.
+  integer, parameter :: relaxations = 2
+
+contains
+
+  !> Follow the error through a step that has been found, before it is committed. Nothing where no temperature is solved for, or
+  !> temperatures stand on middles of sides too.
+  subroutine follow_space_error(scene, equations, solution, dt, outcome, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt   !! [time]
+    type(outcome_t), intent(in) :: outcome
+    type(error_t), allocatable, intent(out) :: error
+    type(fine_system_t) :: system
+    integer :: field, now, timer
+
+    field = find_field(scene%fields, 'temperature')
+    if (field == 0) return
+    if (.not. (scene%fields(field)%declared .and. has_corners_only(scene%fields(field))) .or. scene%fields(field)%given) return
+    call equations%timers%add('heat error in space', timer)
+    call equations%timers%start(timer)
+    now = equations%now
+    call take_turn(equations, field)
+    if (equations%fine%nelement == 0) then
+      call make_fine_mesh(scene, equations, solution, equations%fine)
+    else
+      call place_fine_mesh(scene, solution, equations%fine)
+    end if
+    if (equations%fine%nelement > 0) then
+      call make_system(scene, equations, solution, field, dt, outcome, system)
+      call advance(scene, equations, solution, field, dt, in_two_stages(scene, solution, outcome), system, error)
+    end if
+    equations%now = now
+    call equations%timers%stop(timer)
+  end subroutine follow_space_error
+
+  !> The balance of the step on the fine mesh.
+  subroutine make_system(scene, equations, solution, field, dt, outcome, system)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: field
+    real(wp), intent(in) :: dt
+    type(outcome_t), intent(in) :: outcome
+    type(fine_system_t), intent(out) :: system
+    real(wp), dimension(size(scene%mesh%coordinates, 2)) :: before, now, mean
+    logical :: two_stages
+    integer :: n, d
+
+    two_stages = in_two_stages(scene, solution, outcome)
+    before = solution%fields(field)%value(1, :)
+    now = before
+    mean = before
+    do n = 1, size(now)
+      d = equations%dofs%fields(field)%number(1, n)
+      if (d == 0) cycle
+      now(n) = before(n) + outcome%du(d)
+      if (allocated(outcome%heat%mean) .and. two_stages) then
+        mean(n) = before(n) + outcome%heat%mean(d)
+      else
+        mean(n) = before(n) + scene%strategy%theta*outcome%du(d)
+      end if
+    end do
+    call start_system(equations%fine, system)
+    call add_bodies(scene, equations, solution, equations%fine, before, now, mean, dt, &
+                    merge(diagonal, 1.0_wp, two_stages)*dt, system)
+    call add_loads(scene, equations, equations%fine, field, solution%time + dt, solution%heat%finer, system)
+  end subroutine make_system
+
+  !> The difference at the end of the step, and what is told of it.
+  subroutine advance(scene, equations, solution, field, dt, two_stages, system, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    integer, intent(in) :: field
+    real(wp), intent(in) :: dt
+    logical, intent(in) :: two_stages
+    type(fine_system_t), intent(inout) :: system
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), dimension(equations%fine%nnode) :: source, content, d
+    logical :: fixed(equations%fine%nnode)
+    real(wp) :: length
+    integer :: stage, trial, trials
+
+    call find_fixed(equations, field, fixed)
+    ! what comes to corners is what their functions see less what comes to the nodes beside them
+    source = 2*system%unbalanced - to_corners_all(equations%fine, system%unbalanced)
+    d = solution%heat%finer
+    content = solution%heat%finer_content
+    ! on a new mesh: temperatures alone were carried to it
+    if (.not. any(abs(content) > 0)) content = system%capacity*d
+    where (fixed)
+      d = 0
+      content = 0
+    end where
+    call chord_capacities(scene, equations, equations%fine, content + dt*source, system)
+    length = merge(diagonal, 1.0_wp, two_stages)*dt
+    ! by tables, heat at sides may go with the temperature otherwise at the end of a stage than at its start
+    trials = merge(2, 1, by_tables(scene))
+    do stage = merge(1, 2, two_stages), 2
+      do trial = 1, trials
+        if (stage + trial > 2) &
+          call add_loads(scene, equations, equations%fine, field, solution%time + dt, d, system, slopes_alone=.true.)
+        call solve_stage(equations, field, system, fixed, length, content/length + source, d, error)
+        if (allocated(error)) return
+      end do
+      if (stage == 1) content = content + (1 - diagonal)*dt*(source - flow_of(equations%fine, system, d))
+    end do
+    solution%heat%finer = d
+    solution%heat%finer_content = content + length*(source - flow_of(equations%fine, system, d))
+    call note(equations%fine, system%temperature, finer_share*d, solution%time + dt, solution)
+  end subroutine advance
+
+  !> At corners the sum of what their functions see, at other nodes what is there.
+  pure function to_corners_all(fine, at_nodes) result(all)
+    type(fine_mesh_t), intent(in) :: fine
+    real(wp), intent(in) :: at_nodes(:)
+    real(wp) :: all(size(at_nodes))
+
+    all = to_corners(fine, at_nodes)
+    where (.not. is_corner(fine)) all = at_nodes
+  end function to_corners_all
+
+  pure function is_corner(fine) result(yes)
+    type(fine_mesh_t), intent(in) :: fine
+    logical :: yes(fine%nnode)
+    integer :: e
+
+    yes = .false.
+    do e = 1, fine%nelement
+      yes(fine%nodes(:4, e)) = .true.
+    end do
+  end function is_corner
+
+  !> Nodes whose temperature is imposed, and middles of outer sides between two of them.
+  pure subroutine find_fixed(equations, field, fixed)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: field
+    logical, intent(out) :: fixed(:)   !! (nnode)
+    integer :: n, d
+
+    fixed = .true.
+    associate (fine => equations%fine, number => equations%dofs%fields(field)%number)
+      do n = 1, fine%nelement
+        fixed(fine%nodes(:, n)) = .false.
+      end do
+      do n = 1, size(number, 2)
+        d = number(1, n)
+        if (d > 0) fixed(n) = equations%solves(equations%now)%equation(d) == 0
+      end do
+      do n = 1, size(fine%outside)
+        fixed(fine%outside(n)) = all(fixed(fine%ends(:, fine%outside(n))))
+      end do
+    end associate
+  end subroutine find_fixed
+
+  !> One cycle for (C/length + K) d = rhs.
+  subroutine solve_stage(equations, field, system, fixed, length, rhs, d, error)
+    type(equations_t), intent(inout) :: equations
+    integer, intent(in) :: field
+    type(fine_system_t), intent(in) :: system
+    logical, intent(in) :: fixed(:)         !! (nnode)
+    real(wp), intent(in) :: length          !! [time]
+    real(wp), intent(in) :: rhs(:)          !! (nnode) [power]
+    real(wp), intent(inout) :: d(:)         !! (nnode) [temperature]
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), dimension(size(d)) :: rows, free, residual, correction, change
+    real(wp) :: at_corners(equations%dofs%ndof), unknowns(equations%dofs%ndof), energy
+    integer :: k
+
+    rows = system%capacity/length + diagonal_of_flow(equations%fine, system)
+    where (fixed .or. .not. rows > 0) rows = huge(1.0_wp)
+    free = rhs
+    where (fixed) free = 0
+    residual = free - of_difference_in_step(d)
+    do k = 1, 2*relaxations + 1
+      if (k == relaxations + 1) then
+        ! nothing has been solved for yet: all is at rest
+        if (.not. (equations%solves(equations%now)%analysed .and. has_factors(equations%solves(equations%now)%solver))) cycle
+        associate (number => equations%dofs%fields(field)%number)
+          call to_unknowns(number, to_corners(equations%fine, residual)/system%stiffened, at_corners)
+          call solve_correction(equations, at_corners, unknowns, error, at_hand=.true.)
+          if (allocated(error)) return
+          call from_unknowns(number, unknowns, correction)
+        end associate
+        correction = to_nodes(equations%fine, correction/system%stiffened)
+        where (fixed) correction = 0
+        change = of_difference_in_step(correction)
+        ! as far as the energy of what is left falls
+        energy = dot_product(correction, change)
+        if (.not. energy > 0) cycle
+        energy = dot_product(correction, residual)/energy
+        d = d + energy*correction
+        residual = residual - energy*change
+      else
+        d = d + residual/rows
+        residual = free - of_difference_in_step(d)
+      end if
+    end do
+
+  contains
+
+    !> (C/length + K) t, 0 where temperatures are imposed.
+    function of_difference_in_step(t) result(power)
+      real(wp), intent(in) :: t(:)    !! (nnode) [temperature]
+      real(wp) :: power(size(t))      !! [power]
+
+      power = system%capacity/length*t + flow_of(equations%fine, system, t)
+      where (fixed) power = 0
+    end function of_difference_in_step
+
+  end subroutine solve_stage
+
+  !> Values at nodes as those of their unknowns.
+  pure subroutine to_unknowns(number, at_nodes, of_unknowns)
+    integer, intent(in) :: number(:, :)          !! (1, nnode of the mesh) unknowns, 0 for none
+    real(wp), intent(in) :: at_nodes(:)          !! (nnode)
+    real(wp), intent(out) :: of_unknowns(:)      !! (ndof)
+    integer :: n
+
+    of_unknowns = 0
+    do n = 1, size(number, 2)
+      if (number(1, n) > 0) of_unknowns(number(1, n)) = at_nodes(n)
+    end do
+  end subroutine to_unknowns
+
+  !> Values of unknowns as those of their nodes, 0 at others.
+  pure subroutine from_unknowns(number, of_unknowns, at_nodes)
+    integer, intent(in) :: number(:, :)
+    real(wp), intent(in) :: of_unknowns(:)    !! (ndof)
+    real(wp), intent(out) :: at_nodes(:)      !! (nnode)
+    integer :: n
+
+    at_nodes = 0
+    do n = 1, size(number, 2)
+      if (number(1, n) > 0) at_nodes(n) = of_unknowns(number(1, n))
+    end do
+  end subroutine from_unknowns
+
+  !> The largest error now and so far, and that in the mean square of the volume.
+  pure subroutine note(fine, temperatures, errors, time, solution)
+    type(fine_mesh_t), intent(in) :: fine
+    real(wp), intent(in) :: temperatures(:), errors(:)   !! (nnode) [temperature]
+    real(wp), intent(in) :: time                         !! end of the step
+    type(solution_t), intent(inout) :: solution
+    real(wp) :: square
+    integer :: e
+
+    square = 0
+    do e = 1, fine%nelement
+      square = square + dot_product(fine%volume(:, e), errors(fine%nodes(:, e))**2)
+    end do
+    associate (heat => solution%heat)
+      do e = 1, fine%nelement
+        associate (t => temperatures(fine%nodes(:4, e)))
+          if (heat%space_steps == 0 .and. e == 1) heat%coldest = t(1)
+          if (heat%space_steps == 0 .and. e == 1) heat%hottest = t(1)
+          heat%coldest = min(heat%coldest, minval(t))
+          heat%hottest = max(heat%hottest, maxval(t))
+        end associate
+      end do
+      heat%space_steps = heat%space_steps + 1
+      heat%space_now = maxval(abs(errors))
+      heat%space_largest = max(heat%space_largest, heat%space_now)
+      heat%space_mean = sqrt(square/sum(fine%volume))
+      if (heat%space_mean > heat%space_mean_largest) heat%space_time = time
+      heat%space_mean_largest = max(heat%space_mean_largest, heat%space_mean)
+    end associate
+  end subroutine note
+
+end module space_error

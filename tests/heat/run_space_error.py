@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Estimated errors of temperatures in space beside true ones, in a table: quenches of plates and a square, freezing, bodies that touch, a tube.
+
+usage: run_space_error.py [-v] [-k]
+
+True errors are differences to a mesh so many times finer in each direction, at the nodes of the coarse one and at all instants saved, of the
+tube those to the exact T = A + B ln r. `largest` over time and space, `end` over space, `mean` the largest in time of the mean square.
+Estimates are those of `heat_space` in summary.json. Both runs have short steps, so that errors in time are small beside them.
+"""
+import json
+import os
+import sys
+
+sys.dont_write_bytecode = True
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), "patch")]
+from patch_support import Checks, Run, np  # noqa: E402
+
+TIMES = "THETA TRBDF2 TOL {tol}\nSTRAT {first} 1.E-9 {longest} 20 9 0.25 1.5\nSTOP {stop}\nSAVE {save}\nEND\n"
+PLATE = """TITLE a plate is quenched
+STATE PLSTN
+KINEM SMALL
+BLOCK plate PL8TM 4 metal {option}
+  0. 0. 1. 0. 1. 0.2 0. 0.2
+  {n} 1. 1 1.
+LAW metal HEAT
+  1. 1.
+START T 1000.
+CONVE plate 2 H {h} TS 0.
+"""
+SQUARE = """TITLE the corner of a bar is quenched, as water boils
+STATE {state}
+KINEM SMALL
+BLOCK plate PL8TM 4 metal BILINEAR
+  0. 0. 1. 0. 1. 1. 0. 1.
+  {n} 1. {n} 1.
+LAW metal HEAT
+  1. 1.
+START T 850.
+CONVE plate 2 3 H 20. TS 20.
+  0. 1. 200. 1. 450. 0.5 550. 0.3 900. 0.2
+RADIA plate 1 EPS 1. SIGMA 1.E-9 ZERO 273.15 TS 20.
+"""
+STEFAN = """TITLE a melt freezes
+STATE PLSTN
+KINEM SMALL
+BLOCK half PL8TM 4 alu BILINEAR
+  0. 0. 0.1 0. 0.1 0.005 0. 0.005
+  {n} 1. 1 1.
+LAW alu HEATH
+  TEMP 0.
+  210. 0.
+  TEMP 659.9
+  210. 659.9*3.E6
+  TEMP 660.1
+  95. 659.9*3.E6+1.08E9
+  TEMP 800.
+  95. 659.9*3.E6+1.08E9+139.9*2.5759E6
+START T 740.
+IMPOS half 4 T on 580.
+LIC on
+  0. 1.
+"""
+TOUCH = """TITLE hot steel on copper
+STATE PLSTN
+KINEM SMALL
+BLOCK steel PL8TM 4 hot BILINEAR
+  0. 0. 2. 0. 2. 20. 0. 20.
+  1 1. {n} 1.
+BLOCK copper PL8TM 4 cold BILINEAR
+  0. -60. 2. -60. 2. 0. 0. 0.
+  1 1. {n} 1.
+LAW hot HEAT
+  28. 4.9
+LAW cold HEAT
+  390. 3.4
+START T 1100. steel
+START T 20. copper
+DIE face SIDES copper 3
+COU2DC steel 1 face H {h}
+"""
+TUBE = """TITLE a tube, steady in the end
+STATE AXISYM
+KINEM SMALL
+BLOCK tube PL8TM 4 metal BILINEAR
+  1. 0. 5. 0. 5. 1. 1. 1.
+  {n} 1. 1 1.
+LAW metal HEAT
+  1. 1.
+START T 0.
+IMPOS tube 4 T on 100.
+IMPOS tube 2 T on 0.
+LIC on
+  0. 1.
+"""
+QUICK = {"tol": 0.2, "first": 1e-5, "longest": 0.1, "stop": 0.5, "save": 2}
+CASES = [(f"plate, Biot {h}, {n} elements", PLATE, {"n": n, "h": h, "option": "BILINEAR"}, 8, QUICK) for h in (1, 10, 100, 1000) for n in (4, 8)]
+CASES += [("corner in boiling water, 4 x 4", SQUARE, {"n": 4, "state": "PLSTN"}, 4, {**QUICK, "tol": 1., "stop": 0.3, "save": 3}),
+          ("the same of a cylinder", SQUARE, {"n": 4, "state": "AXISYM"}, 4, {**QUICK, "tol": 1., "stop": 0.3, "save": 3}),
+          ("freezing, 10 elements", STEFAN, {"n": 10}, 8, {"tol": 1., "first": 0.01, "longest": 0.05, "stop": 6, "save": 3}),
+          ("steel on copper, 10 elements", TOUCH, {"n": 10, "h": 20.}, 8, {"tol": 1., "first": 1e-4, "longest": 0.05, "stop": 1, "save": 2}),
+          ("the same, without resistance", TOUCH, {"n": 10, "h": "1.E6"}, 8, {"tol": 1., "first": 1e-4, "longest": 0.05, "stop": 1, "save": 2})]
+
+
+def run_of(checks, name, text, numbers, times):
+    """The run, and its estimates."""
+    run = Run(checks, name, text.format(**numbers) + TIMES.format(**times))
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+        return run, json.load(file)
+
+
+def instants(run):
+    """Places of the nodes, times, temperatures (time, node)."""
+    with run.open() as file:
+        steps = sorted(file["steps"])
+        return (file["mesh/coordinates"][()][:, :2], np.array([file[f"steps/{k}"].attrs["time"] for k in steps]),
+                np.array([file[f"steps/{k}/node/temperature"][()].reshape(-1) for k in steps]))
+
+
+def true_errors(coarse, fine):
+    """Largest of all, at the end, and in the mean square, of a coarse run against a fine one whose nodes hold its own."""
+    x, times, found = instants(coarse)
+    y, at, values = instants(fine)
+    # bodies that touch have nodes at the same places, in the same order
+    shared = [(x[:, None, :], y[None, :, :])]
+    near = np.abs(shared[0][0] - shared[0][1]).max(axis=2) < 1e-9*np.abs(x).max()
+    rank = [near[:k, :].any(axis=0) & near[k] for k in range(len(x))]
+    place = [int(np.flatnonzero(near[k])[-1 if rank[k].any() else 0]) for k in range(len(x))]
+    truth = np.array([np.interp(times, at, values[:, k]) for k in place]).T
+    errors = (truth - found)[1:]
+    return np.abs(errors).max(), np.abs(errors[-1]).max(), np.sqrt((errors**2).mean(axis=1)).max()
+
+
+def compare(checks, what, told, true, least, most):
+    """A row of the table, and its checks."""
+    print(f"| {what} | " + " | ".join(f"{t:.3g} | {e:.3g} | {e/t:.2f}" for t, e in zip(true, told)) + " |")
+    for name, t, e in zip(("largest", "end", "mean"), true, told):
+        checks.that(least*t <= e <= most*t, f"{what}: {name}", f"true {t:.3g}, estimated {e:.3g}")
+
+
+def main():
+    """All cases; what is not estimated; what is warned of."""
+    checks = Checks()
+    print("| case | largest: true | estimated | ratio | end: true | estimated | ratio | mean: true | estimated | ratio |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    for k, (what, text, numbers, times_finer, times) in enumerate(CASES):
+        coarse, summary = run_of(checks, f"coarse{k}", text, numbers, times)
+        fine, _ = run_of(checks, f"fine{k}", text, {**numbers, "n": times_finer*numbers["n"]}, times)
+        told = summary["accuracy"]["heat_space"]
+        compare(checks, what, [told[name] for name in ("largest", "end", "mean_largest")], true_errors(coarse, fine), 1/3, 3)
+    times = {"tol": 0.1, "first": 1e-4, "longest": 50., "stop": 500., "save": 100}
+    run, summary = run_of(checks, "tube", TUBE, {"n": 6}, times)
+    x, _, found = instants(run)
+    true = np.abs(found[-1] - 100*(1 - np.log(x[:, 0])/np.log(5.))).max()
+    compare(checks, "tube, steady, 6 elements", [summary["accuracy"]["heat_space"]["end"]]*3, [true]*3, 0.5, 2)
+    said = [" ".join(w["text"] for w in run_of(checks, f"plate{n}", PLATE, {"n": n, "h": 10, "option": "BILINEAR"}, QUICK)[1]["warnings"])
+            for n in (2, 32)]
+    checks.that("the mesh is coarse for its temperatures" in said[0], "a coarse mesh is warned of", said[0])
+    checks.that(not said[1], "a fine one is not", said[1])
+    _, summary = run_of(checks, "eight", PLATE, {"n": 4, "h": 10, "option": ""}, QUICK)
+    checks.that("heat_space" not in summary["accuracy"], "temperatures of 8 nodes have no estimate", summary["accuracy"])
+    with open(os.path.join(checks.folder, "eight", "eight.log"), encoding="utf-8") as file:
+        checks.that("heat: not estimated (temperatures of 8 nodes)" in file.read(), "and the listing says so", "")
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()
