@@ -137,6 +137,8 @@ contains
         do p = 1, size(xi)
           if (nint(committed(at_status, p, e)) /= contact_open) then
             report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/side%length)
+            report%bearing = report%bearing + 1
+            if (nint(trial(at_status, p, e)) == contact_open) report%lost = report%lost + 1
           end if
           report%event = min(report%event, share_to_contact(committed(:, p, e), trial(:, p, e), side%length))
         end do
@@ -151,7 +153,10 @@ contains
         if (axisym .and. .not. whole) call show_on_axis(xi, x(1, :, e) + du(1:3, e), side%length, trial(:, :, e))
       end do
     end associate
-    if (.not. goes_on(instant, group%die)) report%jump = 0
+    if (.not. goes_on(instant, group%die)) then
+      report%jump = 0
+      report%lost = 0
+    end if
   end subroutine compute
 
   !> The side of an element in the step.

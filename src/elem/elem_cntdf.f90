@@ -108,7 +108,10 @@ contains
         if (axisym) call show_on_axis(xi, x(1, 1:3, e) + du(1:3, e), own%length, trial(:, :, e))
       end do
     end associate
-    if (.not. goes_on(instant, group%die)) report%jump = 0
+    if (.not. goes_on(instant, group%die)) then
+      report%jump = 0
+      report%lost = 0
+    end if
 
   contains
 
@@ -157,6 +160,8 @@ contains
       if (handed%share > 0) call press_next()
       if (nint(committed(at_status, p, e)) /= contact_open) then
         report%jump = max(report%jump, abs(trial(at_penetration, p, e) - committed(at_penetration, p, e))/own%length)
+        report%bearing = report%bearing + 1
+        if (nint(trial(at_status, p, e)) == contact_open) report%lost = report%lost + 1
       end if
       report%event = min(report%event, share_to_contact(committed(:nblock, p, e), trial(:nblock, p, e), own%length))
     end subroutine press_point

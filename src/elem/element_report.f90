@@ -27,6 +27,8 @@ module element_report
     logical :: unpaired = .false.
     !> Largest change of penetration at a point already in contact, over the side.
     real(wp) :: jump = 0.0_wp
+    !> Points in contact as the step began, and those of them that no longer are.
+    integer :: bearing = 0, lost = 0
     !> A side is in contact between its points.
     logical :: between = .false.
     !> Square of the norm of the sources within the elements, which the other terms of the elements balance [power^2].

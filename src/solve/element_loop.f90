@@ -82,6 +82,8 @@ contains
         do b = 1, size(reports)
           report%strain = max(report%strain, reports(b)%strain)
           report%jump = max(report%jump, reports(b)%jump)
+          report%bearing = report%bearing + reports(b)%bearing
+          report%lost = report%lost + reports(b)%lost
           report%between = report%between .or. reports(b)%between
           report%event = min(report%event, reports(b)%event)
           report%passed = min(report%passed, reports(b)%passed)

@@ -1,11 +1,11 @@
 !> Where Newton's method starts: the motion of the last step, in proportion.
 !>
 !> It goes straight on, while points that slide on a die follow its bends: after a slip s on a fillet of radius r they are
-!> s^2/2r off it, open or far too deep. Where that changes a penetration much, the first correction is found with the points that
-!> were in contact kept there, their law linearised at the depth they had (`kept` of instant_t): it brings them back to the
-!> die, and the body behind them with them, while slip and flow go on as they were. Where no support and no die is driven
-!> there is no motion that goes on: only the onset of it is kept, and the matrix there (with the contacts of now) spreads the
-!> rest.
+!> s^2/2r off it, open or far too deep. Where that changes a penetration much, or loses many points of a light contact, as that of a
+!> sheet under its holder, the first correction is found with the points that were in contact kept there, their law linearised at
+!> the depth they had (`kept` of instant_t): it brings them back to the die, and the body behind them with them, while slip and flow
+!> go on as they were. Where no support and no die is driven there is no motion that goes on: only the onset of it is kept, and the
+!> matrix there (with the contacts of now) spreads the rest.
 !>
 !> A side that is held between its points (contact_between) meets a bend of a die at another place in every step, and where it
 !> slides by a tenth of its length it goes off its straight path by more than the depth allowed. There the start follows the bend of
@@ -48,6 +48,9 @@ module predictor
 
   !> Change of penetration, as a share of the side, below which contact goes on as before.
   real(wp), parameter :: smooth_contact = 2.0e-3_wp
+  !> So does contact that no more than this share of its points lose. A light one, as that of a sheet under its holder, is lost by
+  !> much less; as dies withdraw it is lost in any case.
+  real(wp), parameter :: few_lost = 0.2_wp
   !> Share of the last motion that shows which points load; backwards, which unload.
   real(wp), parameter :: onset = 0.02_wp
 
@@ -85,7 +88,7 @@ contains
     if (is_first_on_mesh()) call start_on_new_mesh()
     if (allocated(error)) return
     if (.not. (begun .or. known%goes_on) .and. report%status == block_done .and. report%event >= 1 &
-        .and. report%jump > smooth_contact) then
+        .and. contact_changes()) then
       kept = is_driven(equations%dofs, known%motion)
       call start_from(merge(known%ratio, onset*known%ratio, kept))
     end if
@@ -106,6 +109,18 @@ contains
            .and. equations%solves(equations%now)%own(displacement_field)
     end function is_first_on_mesh
 
+    !> Contact does not go on as before, though no driven die withdraws.
+    function contact_changes() result(changes)
+      logical :: changes
+      real(wp) :: driven(size(du))
+
+      changes = report%jump > smooth_contact
+      if (changes .or. .not. report%lost > few_lost*report%bearing) return
+      driven = 0
+      driven(equations%dofs%prescribed%dof) = du(equations%dofs%prescribed%dof)
+      changes = .not. any(work_of_dies(equations, driven) < 0)
+    end function contact_changes
+
     !> Start from a share of the last motion. Where contact alone tells that it is not to be begun with, for another evaluation
     !> follows, or the step is cut short where contact begins, nothing else is evaluated.
     subroutine try_from(share)
@@ -116,7 +131,7 @@ contains
         if (is_driven(equations%dofs, known%motion)) then
           call start_from(share, alone=.true.)
           if (report%status == block_done .and. report%between) call try_bend(share)
-          if (report%status == block_done .and. (report%event < 1 .or. report%jump > smooth_contact)) return
+          if (report%status == block_done .and. (report%event < 1 .or. contact_changes())) return
         end if
       end if
       call start_from(share)
