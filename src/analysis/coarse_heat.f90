@@ -29,7 +29,7 @@ contains
       call add_text(warnings, 'the mesh is coarse for its temperatures: in space they err by ' &
                     //to_text(heat%space_mean_largest, 3)//' in the mean square of the volume at time ' &
                     //to_text(heat%space_time, 4)//', by '//to_text(min(heat%space_largest, range), 3)//' at most and by ' &
-                    //to_text(heat%space_now, 3)//' at the end, of a range of '//to_text(range, 4) &
+                    //to_text(min(heat%space_now, range), 3)//' at the end, of a range of '//to_text(range, 4) &
                     //', and phases and stresses with them; use smaller elements where heat comes in or goes out (half as ' &
                     //'large: a quarter of the error)')
     end associate

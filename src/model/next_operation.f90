@@ -4,6 +4,7 @@
 !> place, goes on. The mesh is that of the one before, as a generation of its own: files and remeshing know nothing of operations.
 module next_operation
   use fields, only: displacement_field, find_field, on_nodes, on_section, pilot_field
+  use finer_temperatures, only: take_finer
   use kinds, only: wp
   use new_bodies, only: note_laid, place_new_nodes
   use remesh, only: remesh_t
@@ -92,6 +93,9 @@ contains
     after%path%smooth_rate = fresh%path%smooth_rate
     ! the dies are others, with temperatures of their own
     after%heat%die_error = fresh%heat%die_error
+    after%heat%finer = fresh%heat%finer
+    after%heat%finer_content = fresh%heat%finer_content
+    call take_finer(old, before%heat, new, after%heat)
     after%estimate = fresh%estimate
     ! what this mesh errs is seen on it later too
     after%estimate%carried_stress = before%estimate%carried_stress*before%estimate%stress_left

@@ -14,7 +14,6 @@
 !> converges at any step), correction by the factors at hand of the mesh itself, relaxation. It begins with the difference of the
 !> stage before, so little is left of what a cycle leaves.
 module space_error
-  use corrections, only: solve_correction
   use equations, only: equations_t, take_turn
   use errors, only: error_t
   use fields, only: find_field, has_corners_only
@@ -26,7 +25,7 @@ module space_error
   use heat_stages, only: in_two_stages
   use heat_record, only: finer_share
   use kinds, only: wp
-  use linear_solver, only: has_factors
+  use linear_solver, only: solve_unrefined
   use scene, only: scene_t
   use solution, only: solution_t
   use step_outcome, only: outcome_t
@@ -202,8 +201,9 @@ contains
     real(wp), intent(inout) :: d(:)         !! (nnode) [temperature]
     type(error_t), allocatable, intent(out) :: error
     real(wp), dimension(size(d)) :: rows, free, residual, correction, change
-    real(wp) :: at_corners(equations%dofs%ndof), unknowns(equations%dofs%ndof), energy
+    real(wp) :: energy
     integer :: k
+    logical :: found
 
     rows = system%capacity/length + diagonal_of_flow(equations%fine, system)
     where (fixed .or. .not. rows > 0) rows = huge(1.0_wp)
@@ -212,14 +212,9 @@ contains
     residual = free - of_difference_in_step(d)
     do k = 1, 2*relaxations + 1
       if (k == relaxations + 1) then
-        ! nothing has been solved for yet: all is at rest
-        if (.not. (equations%solves(equations%now)%analysed .and. has_factors(equations%solves(equations%now)%solver))) cycle
-        associate (number => equations%dofs%fields(field)%number)
-          call to_unknowns(number, to_corners(equations%fine, residual)/system%stiffened, at_corners)
-          call solve_correction(equations, at_corners, unknowns, error, at_hand=.true.)
-          if (allocated(error)) return
-          call from_unknowns(number, unknowns, correction)
-        end associate
+        call correct_by_mesh(equations, field, to_corners(equations%fine, residual)/system%stiffened, correction, found, error)
+        if (allocated(error)) return
+        if (.not. found) cycle
         correction = to_nodes(equations%fine, correction/system%stiffened)
         where (fixed) correction = 0
         change = of_difference_in_step(correction)
@@ -248,31 +243,35 @@ contains
 
   end subroutine solve_stage
 
-  !> Values at nodes as those of their unknowns.
-  pure subroutine to_unknowns(number, at_nodes, of_unknowns)
-    integer, intent(in) :: number(:, :)          !! (1, nnode of the mesh) unknowns, 0 for none
-    real(wp), intent(in) :: at_nodes(:)          !! (nnode)
-    real(wp), intent(out) :: of_unknowns(:)      !! (ndof)
+  !> Temperatures of the corners by the factors at hand of the mesh itself, which stay as they are, as all that is kept of its
+  !> solves. `found` is false where there are none: nothing has been solved for yet, or they failed.
+  subroutine correct_by_mesh(equations, field, residual, correction, found, error)
+    type(equations_t), intent(inout) :: equations
+    integer, intent(in) :: field
+    real(wp), intent(in) :: residual(:)      !! (nnode) [power]
+    real(wp), intent(out) :: correction(:)   !! (nnode), 0 where nothing is solved for [temperature]
+    logical, intent(out) :: found
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: x(equations%solves(equations%now)%neq)
     integer :: n
 
-    of_unknowns = 0
-    do n = 1, size(number, 2)
-      if (number(1, n) > 0) of_unknowns(number(1, n)) = at_nodes(n)
-    end do
-  end subroutine to_unknowns
-
-  !> Values of unknowns as those of their nodes, 0 at others.
-  pure subroutine from_unknowns(number, of_unknowns, at_nodes)
-    integer, intent(in) :: number(:, :)
-    real(wp), intent(in) :: of_unknowns(:)    !! (ndof)
-    real(wp), intent(out) :: at_nodes(:)      !! (nnode)
-    integer :: n
-
-    at_nodes = 0
-    do n = 1, size(number, 2)
-      if (number(1, n) > 0) at_nodes(n) = of_unknowns(number(1, n))
-    end do
-  end subroutine from_unknowns
+    correction = 0
+    found = .false.
+    associate (number => equations%dofs%fields(field)%number, solve => equations%solves(equations%now))
+      if (.not. solve%analysed) return
+      x = 0
+      do n = 1, size(number, 2)
+        if (number(1, n) == 0) cycle
+        if (solve%equation(number(1, n)) > 0) x(solve%equation(number(1, n))) = residual(n)
+      end do
+      call solve_unrefined(solve%solver, x, found, error)
+      if (allocated(error) .or. .not. found) return
+      do n = 1, size(number, 2)
+        if (number(1, n) == 0) cycle
+        if (solve%equation(number(1, n)) > 0) correction(n) = x(solve%equation(number(1, n)))
+      end do
+    end associate
+  end subroutine correct_by_mesh
 
   !> The largest error now and so far, and that in the mean square of the volume.
   pure subroutine note(fine, temperatures, errors, time, solution)

@@ -121,6 +121,11 @@ def summary(run):
         return json.load(file)
 
 
+def told_of(run):
+    """Warnings of a run but for that of its mesh: one element across a part is coarse for temperatures, which is not what these checks are of."""
+    return [line["text"] for line in summary(run)["warnings"] if not line["text"].startswith("the mesh is coarse for its temperatures: ")]
+
+
 def melting(checks):
     conductivity, capacity, latent, cold, end = 2.2, 1.9e6, 3.06e8, -20., 7200.
     stefan = -cold*capacity/latent
@@ -454,7 +459,7 @@ def told(checks):
                   f"   2 1.   2 1.\nLAW hot META\n   STEEL soft.met s\n   ENERGY 1. ZERO {steel_zero}\nSTART T 1200.\n"
                   f"RADIA bar 2 EPS 0.8 SIGMA 5.67E-11 ZERO {zero} TS 320.\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
         if run.ok:
-            lines = [line["text"] for line in summary(run)["warnings"]]
+            lines = told_of(run)
             checks.that(["absolute zero is" in line and "by bar.2/RADIA" in line and "by LAW hot" in line for line in lines] == [True]*apart,
                         f"zeros {steel_zero:g} and {zero:g}: told", lines)
     # units that cannot be of one deck: what is wrong, the numbers of META, and more
@@ -473,21 +478,21 @@ def told(checks):
                   f"   2 1.   2 1.\nLAW firm ARBTHMET\n   STEEL firm.met s\n   STRESS 1. {solid}\nADDEL bar PL8TM hot BILINEAR\nLAW hot META\n   STEEL firm.met s\n"
                   f"   {heat}\nSTART T 900.\nFIXED bar 1 XY\n{cooling}STRAT 0.01 0.01 0.01 4 3\nSTOP 0.01\nEND\n")
         if run.ok:
-            lines = [line["text"] for line in summary(run)["warnings"]]
+            lines = told_of(run)
             checks.that(len(lines) == (words is not None) and all(words in line for line in lines), f"units, {name}: told", lines)
     # 20 is 20 K where ZERO is 0; nothing is colder than what only takes up
     for around, zero, cold in ((20., 0., True), (293., 0., False), (20., 273.15, False), (0., 0., False)):
         run = Run(checks, f"around-{around:g}-{zero:g}", "TITLE around\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
                   f"   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 900.\nRADIA bar 2 EPS 0.8 SIGMA 5.67E-11 ZERO {zero} TS {around}\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
         if run.ok:
-            lines = [line["text"] for line in summary(run)["warnings"]]
+            lines = told_of(run)
             checks.that(["colder than liquid nitrogen" in line for line in lines] == [True]*cold, f"surroundings of {around:g}, ZERO {zero:g}: told", lines)
     # air until water comes: never both
     run = Run(checks, "in-turns", "TITLE in turns\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
               "   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 100.\nLIC air\n   0. 1.   1. 1.   1.1 0.   2. 0.\nLIC water\n   0. 0.   1. 0.   1.1 1.   2. 1.\n"
               "CONVE bar 2 H 1. air TS 20.\nCONVE bar 2 3 H 5. water TS 20.\nSTRAT 1. 1. 1. 4 3\nSTOP 2.\nEND\n")
     if run.ok:
-        checks.that(not summary(run)["warnings"], "in turns: nothing is told", summary(run)["warnings"])
+        checks.that(not told_of(run), "in turns: nothing is told", told_of(run))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Estimated errors of temperatures in space beside true ones, in a table: quenches of plates and a square, freezing, bodies that touch, a tube.
+"""Estimated errors of temperatures in space beside true ones, in a table: quenches of plates and a square, freezing, bodies that touch, a tube,
+a body that is laid beside another and taken away.
 
 usage: run_space_error.py [-v] [-k]
 
@@ -93,6 +94,25 @@ IMPOS tube 2 T on 0.
 LIC on
   0. 1.
 """
+LAID = """TITLE hot metal is laid beside cold metal, cools with it and is taken away
+STATE PLSTN
+KINEM SMALL
+BLOCK cold PL8TM 4 metal BILINEAR
+  0. 0. 1. 0. 1. 0.1 0. 0.1
+  {n} 1. 1 1.
+BLOCK hot PL8TM 4 metal BILINEAR
+  1. 0. 2. 0. 2. 0.1 1. 0.1
+  {n} 1. 1 1.
+JOIN cold 2 hot 4
+LAW metal HEAT
+  1. 1.
+START T 100. cold
+START T 1100. hot
+THETA TRBDF2 TOL 0.2
+STRAT 1.E-5 1.E-9 0.1 20 9 0.25 1.5
+SAVE 2
+"""
+OPERATIONS = (("before", "cold", 0.05), ("laid", "all", 0.1), ("later", "all", 0.1), ("parted", "cold", 0.1))
 QUICK = {"tol": 0.2, "first": 1e-5, "longest": 0.1, "stop": 0.5, "save": 2}
 CASES = [(f"plate, Biot {h}, {n} elements", PLATE, {"n": n, "h": h, "option": "BILINEAR"}, 8, QUICK) for h in (1, 10, 100, 1000) for n in (4, 8)]
 CASES += [("corner in boiling water, 4 x 4", SQUARE, {"n": 4, "state": "PLSTN"}, 4, {**QUICK, "tol": 1., "stop": 0.3, "save": 3}),
@@ -138,6 +158,32 @@ def compare(checks, what, told, true, least, most):
         checks.that(least*t <= e <= most*t, f"{what}: {name}", f"true {t:.3g}, estimated {e:.3g}")
 
 
+def laid(checks):
+    """Bodies come and go: errors go on with what stays, what comes has none, what is not there has none."""
+    text = LAID + "".join(f"OPERA {name}\n" + ("ASLEEP hot\n" if there == "cold" else "") + f"CONVE cold 4 H 10. TS 0.\nSTOP {stop}\n"
+                          for name, there, stop in OPERATIONS) + "END\n"
+    runs = [Run(checks, f"laid{n}", text.format(n=n)) for n in (4, 32)]
+    if not all(run.ok for run in runs):
+        return
+    last = None
+    for k, (name, there, _) in enumerate(OPERATIONS, 1):
+        with runs[0].open(k) as coarse, runs[1].open(k) as fine:
+            x, y = (file["mesh/coordinates"][()][:, :2] for file in (coarse, fine))
+            first, end = (coarse[f"steps/{sorted(coarse['steps'])[i]}/node"] for i in (0, -1))
+            truth = fine[f"steps/{sorted(fine['steps'])[-1]}/node/temperature"][()].ravel()
+            is_there = x[:, 0] < (1 + 1e-9 if there == "cold" else 3)
+            place = [int(np.flatnonzero(np.abs(y - at).max(axis=1) < 1e-9)[0]) for at in x]
+            true = np.abs(truth[place] - end["temperature"][()].ravel())[is_there].max()
+            told = end["error_temperature"][()].ravel()
+            began = first["error_temperature"][()].ravel() if k > 1 else 0*told
+        print(f"| end of `{name}`: | | | | {true:.3g} | {np.abs(told).max():.3g} | {np.abs(told).max()/true:.2f} | | | |")
+        checks.that(true/3 <= np.abs(told).max() <= 3*true, f"{name}: end", f"true {true:.3g}, estimated {np.abs(told).max():.3g}")
+        checks.that(not np.any(told[~is_there]), f"{name}: what is not there has no error", told[~is_there])
+        if k > 1:
+            checks.that(np.array_equal(began, np.where(is_there, last, 0)), f"{name}: it begins with the errors of what stays", began)
+        last = told
+
+
 def main():
     """All cases; what is not estimated; what is warned of."""
     checks = Checks()
@@ -161,6 +207,7 @@ def main():
     checks.that("heat_space" not in summary["accuracy"], "temperatures of 8 nodes have no estimate", summary["accuracy"])
     with open(os.path.join(checks.folder, "eight", "eight.log"), encoding="utf-8") as file:
         checks.that("heat: not estimated (temperatures of 8 nodes)" in file.read(), "and the listing says so", "")
+    laid(checks)
     checks.end()
 
 

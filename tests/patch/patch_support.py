@@ -92,9 +92,9 @@ class Run:
         names = [title.split(" [")[0] for title in rows[0]]
         return {name: np.array([float(row[k]) for row in rows[1:]]) for k, name in enumerate(names)}
 
-    def open(self):
-        """The fields."""
-        return h5py.File(os.path.join(self.out, self.name + ".g01.h5"), "r")
+    def open(self, generation=1):
+        """The fields on a mesh, the first or that of a later operation."""
+        return h5py.File(os.path.join(self.out, f"{self.name}.g{generation:02}.h5"), "r")
 
     def mesh(self):
         """Coordinates (nnode, 2) as the scene began, and nodes (nelem, 8) from 0."""
