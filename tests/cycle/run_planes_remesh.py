@@ -6,11 +6,13 @@ usage: run_planes_remesh.py [--blocks] [-v] [-k]
 --blocks prints force and work on the meshes of blocks, of 14 x 14 elements each for the pore and 20 x 20 for waists.
 
 All end with 0, hardly a try at a new mesh is refused, nothing of the last mesh is behind a plane, and force and work are those of the same decks on their first meshes of blocks, which
-tests/stability/run_planes.py compares with dies along the planes and with the whole plate. Support and wall carry what the die does, on every mesh.
+tests/stability/run_planes.py compares with dies along the planes and with the whole plate. Support and wall carry what the die does, on every mesh,
+but in steps that the listing says were damped: viscous forces carry a part there, on some processors for a dozen steps of waist, with hardly any energy.
 """
 import glob
 import json
 import os
+import re
 import sys
 
 sys.dont_write_bytecode = True
@@ -18,7 +20,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from remeshed import cycle, tries  # noqa: E402
 from support import DONE, Checks, history, run, said, write  # noqa: E402
 
-SAME_FORCE, SAME_WORK = 0.01, 0.005
+SAME_FORCE, SAME_WORK, DAMPED = 0.01, 0.005, 1e-4
 BODY = """TITLE  Folds onto a plane of symmetry
 STATE  {state}
 KINEM  LOG
@@ -74,6 +76,13 @@ def on_blocks(checks):
     checks.end()
 
 
+def damped_steps(folder, name):
+    """Steps whose forces have viscous ones in them, as the listing says."""
+    with open(os.path.join(folder, name + ".log"), encoding="utf-8") as file:
+        said_so = re.findall(r"^note: steps (\d+) to (\d+) were damped", file.read(), re.MULTILINE)
+    return {step for first, last in said_so for step in range(int(first), int(last) + 1)}
+
+
 def main():
     checks = Checks()
     if "--blocks" in sys.argv:
@@ -89,10 +98,13 @@ def main():
         off = rows["force_y_upper"][-1]/force - 1, rows["external_work"][-1]/work - 1
         checks.that(abs(off[0]) <= SAME_FORCE, f"{name}: force within {SAME_FORCE:.0%}", f"{off[0]:.2%}")
         checks.that(abs(off[1]) <= SAME_WORK, f"{name}: work within {SAME_WORK:.1%}", f"{off[1]:.2%}")
-        apart = max(abs(support/die - 1) for support, die in zip(rows["support"], rows["force_y_upper"]) if die > 0.01*force)
-        checks.that(apart <= 1e-3, f"{name}: support and wall carry what the die does", f"{apart:.1e}")
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
+        checks.that(summary["checks"].get("damped_share", 0) <= DAMPED, f"{name}: energy taken by damping", summary["checks"])
+        damped = damped_steps(folder, name)
+        apart = max(abs(support/die - 1) for step, support, die in zip(rows["step"], rows["support"], rows["force_y_upper"])
+                    if die > 0.01*force and int(step) not in damped)
+        checks.that(apart <= 1e-3, f"{name}: support and wall carry what the die does", f"{apart:.1e}")
         walls = summary["walls"]
         checks.that(walls and walls[0]["support"] == "FIXED part.1 Y", f"{name}: the wall is kept by all meshes", walls)
         checks.that(walls and walls[0]["force_beside_support"] > 0.05*force, f"{name}: the wall carries", walls)
