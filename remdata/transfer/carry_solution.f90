@@ -140,7 +140,7 @@ contains
       end if
       if (is_followed) then
         if (pass == 1) from(n + 1, :) = before%heat%finer(:size(moved, 2))
-        if (pass == 2) call take_finer(new, to(n + 1, :), after%heat%finer)
+        if (pass == 2) call place_finer(new, to(n + 1, :), after%heat%finer)
       end if
       if (pass == 2) exit
       call carry_at_nodes(mesh, from, new%mesh%coordinates, material, options%outside, to, farthest, error)
@@ -173,7 +173,7 @@ contains
   end subroutine carry_nodes
 
   !> Temperatures that a finer mesh has more, at the nodes of the new mesh and at the centres of its elements (space_error).
-  pure subroutine take_finer(scene, at_nodes, finer)
+  pure subroutine place_finer(scene, at_nodes, finer)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: at_nodes(:)     !! (nnode) [temperature]
     real(wp), intent(inout) :: finer(:)     !! (nnode + nelem) [temperature]
@@ -190,7 +190,7 @@ contains
         end associate
       end do
     end do
-  end subroutine take_finer
+  end subroutine place_finer
 
   !> Errors of the temperatures in time, at middle nodes too where temperatures stand on corners.
   pure function errors_at_nodes(scene, solution) result(errors)

@@ -238,7 +238,7 @@ contains
     ! what is given of the section has no error, or that of equilibrium
     if (scene%plane_state == generalised_plane_strain) then
       do k = 1, size(scene%section_drives)
-        yes = yes .and. name /= merge(section_loads(k)//'   ', section_motions(k), scene%section_drives(k)%kind == section_forced)
+        yes = yes .and. name /= merge(section_loads(k), section_motions(k), scene%section_drives(k)%kind == section_forced)
       end do
     end if
     ! round the axis these forces are in balance by themselves

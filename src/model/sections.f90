@@ -20,7 +20,7 @@ module sections
   character(len=2), parameter :: section_names(3) = ['E ', 'KX', 'KY']
   !> Columns of the history: the motion of each component, and its load.
   character(len=19), parameter :: section_motions(3) = ['section_strain     ', 'section_curvature_x', 'section_curvature_y']
-  character(len=16), parameter :: section_loads(3) = ['section_force   ', 'section_moment_x', 'section_moment_y']
+  character(len=19), parameter :: section_loads(3) = ['section_force      ', 'section_moment_x   ', 'section_moment_y   ']
 
   type :: section_drive_t
     integer :: kind = section_held

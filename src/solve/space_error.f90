@@ -17,10 +17,11 @@ module space_error
   use equations, only: equations_t, take_turn
   use errors, only: error_t
   use fields, only: find_field, has_corners_only
+  use fine_bodies, only: add_bodies, chord_capacities
+  use fine_loads, only: add_loads, by_tables
   use fine_mesh, only: make_fine_mesh, place_fine_mesh
   use fine_mesh_data, only: fine_mesh_t
-  use fine_system, only: add_bodies, add_loads, by_tables, chord_capacities, diagonal_of_flow, fine_system_t, &
-                         flow_of, start_system, to_corners, to_nodes
+  use fine_system, only: fine_system_t, flow_of, row_sums_of_flow, start_system, to_corners, to_nodes
   use heat_error, only: diagonal
   use heat_stages, only: in_two_stages
   use heat_record, only: finer_share
@@ -64,7 +65,8 @@ contains
     end if
     if (equations%fine%nelement > 0) then
       call make_system(scene, equations, solution, field, dt, outcome, system)
-      call advance(scene, equations, solution, field, dt, in_two_stages(scene, solution, outcome), system, error)
+      call advance(scene, equations, solution, field, dt, in_two_stages(scene, solution, outcome), outcome%iterations > 0, &
+                   system, error)
     end if
     equations%now = now
     call equations%timers%stop(timer)
@@ -104,13 +106,14 @@ contains
   end subroutine make_system
 
   !> The difference at the end of the step, and what is told of it.
-  subroutine advance(scene, equations, solution, field, dt, two_stages, system, error)
+  subroutine advance(scene, equations, solution, field, dt, two_stages, at_hand, system, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
     integer, intent(in) :: field
     real(wp), intent(in) :: dt
     logical, intent(in) :: two_stages
+    logical, intent(in) :: at_hand   !! factors of a matrix of this step are: those of an earlier one are not, in a run that goes on
     type(fine_system_t), intent(inout) :: system
     type(error_t), allocatable, intent(out) :: error
     real(wp), dimension(equations%fine%nnode) :: source, content, d
@@ -137,7 +140,7 @@ contains
       do trial = 1, trials
         if (stage + trial > 2) &
           call add_loads(scene, equations, equations%fine, field, solution%time + dt, d, system, slopes_alone=.true.)
-        call solve_stage(equations, field, system, fixed, length, content/length + source, d, error)
+        call solve_stage(equations, field, system, fixed, at_hand, length, content/length + source, d, error)
         if (allocated(error)) return
       end do
       if (stage == 1) content = content + (1 - diagonal)*dt*(source - flow_of(equations%fine, system, d))
@@ -191,11 +194,12 @@ contains
   end subroutine find_fixed
 
   !> One cycle for (C/length + K) d = rhs.
-  subroutine solve_stage(equations, field, system, fixed, length, rhs, d, error)
+  subroutine solve_stage(equations, field, system, fixed, at_hand, length, rhs, d, error)
     type(equations_t), intent(inout) :: equations
     integer, intent(in) :: field
     type(fine_system_t), intent(in) :: system
     logical, intent(in) :: fixed(:)         !! (nnode)
+    logical, intent(in) :: at_hand          !! factors of a matrix of the step are
     real(wp), intent(in) :: length          !! [time]
     real(wp), intent(in) :: rhs(:)          !! (nnode) [power]
     real(wp), intent(inout) :: d(:)         !! (nnode) [temperature]
@@ -205,13 +209,14 @@ contains
     integer :: k
     logical :: found
 
-    rows = system%capacity/length + diagonal_of_flow(equations%fine, system)
+    rows = system%capacity/length + row_sums_of_flow(equations%fine, system)
     where (fixed .or. .not. rows > 0) rows = huge(1.0_wp)
     free = rhs
     where (fixed) free = 0
     residual = free - of_difference_in_step(d)
     do k = 1, 2*relaxations + 1
       if (k == relaxations + 1) then
+        if (.not. at_hand) cycle
         call correct_by_mesh(equations, field, to_corners(equations%fine, residual)/system%stiffened, correction, found, error)
         if (allocated(error)) return
         if (.not. found) cycle
