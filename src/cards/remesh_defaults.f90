@@ -23,8 +23,8 @@ module remesh_defaults
   !> Sides of a narrow contact over those of a new mesh: below that contact is known to within a node or two on the one as on the
   !> other.
   real(wp), parameter :: narrow = 1.5_wp
-  !> Sides that corners of dies press into over their length as new: where they were longer the force dropped by 2 to 8 % at the
-  !> next mesh, else by 1 % (decks/can_sharp).
+  !> Sides that corners of dies press into over their length as new: without such a limit the force went up by 2 to 8 % before the
+  !> next mesh, with it by 1 % (decks/can_sharp).
   real(wp), parameter :: corner = 1.5_wp
   !> Cutbacks in a row; steps between two meshes.
   integer, parameter :: cutbacks = 4, steps = 5
@@ -35,7 +35,7 @@ module remesh_defaults
   real(wp), parameter :: smallest_share = 0.2_wp
   !> The same at a sharp corner of a die over elsewhere: a side that matter flows out of past a corner stays nearly straight, and
   !> the die acts as if it were larger by what of the side lies beyond (decks/can_sharp).
-  real(wp), parameter :: corner_share = 0.5_wp
+  real(wp), parameter :: corner_share = 0.35_wp
   integer, parameter :: growth = 3
   !> Elements of a body where a finer one lies on it, over those of that one. Both are known by the points of one of them, and the
   !> coarser one bends into parabolas as long as its sides: with twice the size reactions are within 0.5 % of those of meshes alike.

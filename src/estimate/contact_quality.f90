@@ -7,7 +7,7 @@
 module contact_quality
   use contact_penalties, only: allowed_penetration
   use contact_scan, only: deepest_sample, is_near, widest_gap
-  use contact_state, only: at_penetration, at_piece, at_status, at_xi, contact_block
+  use contact_state, only: at_penetration, at_status, contact_block
   use dies, only: die_t, in_pilot_axes, present_die
   use fields, only: pilot_field
   use kinds, only: wp
@@ -20,7 +20,7 @@ module contact_quality
   use vectors, only: length_of
   implicit none
   private
-  public :: find_corner_side, misfit_t, measure_misfit, misfit_of_sides
+  public :: misfit_t, measure_misfit, misfit_of_sides
 
   !> The worst of a group, over the allowed penetration, and the sides where it is (0: none).
   type :: misfit_t
@@ -30,8 +30,6 @@ module contact_quality
 
   !> What is nearer to a die than this share of the side touches it: multipliers hold points as much above it as below.
   real(wp), parameter :: touching = 5.0e-4_wp
-  !> Cosine of 30 degrees: a vertex that turns by more is a sharp corner.
-  real(wp), parameter :: cosine_of_corner = 0.866_wp
 
 contains
 
@@ -87,57 +85,6 @@ contains
       end associate
     end do
   end function misfit_of_sides
-
-  !> The side of a group that a sharp corner of the die presses into and that has grown most since the mesh began. It stays nearly
-  !> straight while the corner is in it: what of it lies beyond the corner makes the die act as if it were larger.
-  pure subroutine find_corner_side(scene, g, solution, growth, side)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g                   !! a group that faces a die
-    type(solution_t), intent(in) :: solution   !! at an accepted instant
-    real(wp), intent(out) :: growth            !! its length over that when the mesh began [-]
-    integer, intent(out) :: side               !! 0: there is none
-    real(wp) :: x(2, size(scene%mesh%coordinates, 2))
-    integer :: e, p, n, place
-    logical :: sharp
-
-    growth = 0
-    side = 0
-    place = find_variable(scene%groups(g)%variables, 'corner_place')
-    if (place == 0 .or. faces_itself(scene, scene%groups(g))) return
-    place = scene%groups(g)%variables(place)%first
-    x = present_coordinates(scene, solution)
-    n = contact_block(.true., size(solution%groups(g)%committed, 1))
-    do e = 1, size(scene%groups(g)%connectivity, 2)
-      ! a node on the axis has the state of a corner, at the end of its side (axis_contact)
-      associate (state => solution%groups(g)%committed(:, :, e))
-        sharp = .false.
-        do p = 1, size(state, 2)
-          if (nint(state(n + at_status, p)) == contact_open .or. abs(state(place, p)) >= 1) cycle
-          sharp = sharp .or. is_sharp(scene%dies(scene%groups(g)%die), nint(state(n + at_piece, p)), state(n + at_xi, p))
-        end do
-        if (.not. sharp) cycle
-      end associate
-      associate (first => scene%groups(g)%connectivity(1, e), last => scene%groups(g)%connectivity(3, e))
-        call keep(length_of(x(:, last) - x(:, first)) &
-                  /length_of(scene%mesh%coordinates(:, last) - scene%mesh%coordinates(:, first)), e, growth, side)
-      end associate
-    end do
-  end subroutine find_corner_side
-
-  !> A corner of a die, at an end of one of its pieces, turns by more than a polygon that follows a curve.
-  pure function is_sharp(die, piece, xi) result(yes)
-    type(die_t), intent(in) :: die
-    integer, intent(in) :: piece
-    real(wp), intent(in) :: xi   !! of the end [-]
-    logical :: yes
-    integer :: k
-
-    yes = .false.
-    do k = 1, size(die%corners, 2)
-      if (die%corner_piece(k) /= piece .or. die%corner_xi(k)*xi < 0) cycle
-      yes = yes .or. dot_product(die%corners(3:4, k), die%corners(5:6, k)) < cosine_of_corner
-    end do
-  end function is_sharp
 
   !> Largest penetration of points in contact, of a rule or of corners [length].
   pure function depth_of(state, rule) result(depth)

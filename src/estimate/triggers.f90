@@ -8,9 +8,14 @@
 !> Where what is left of the scene takes two more steps at most the mesh that is there makes them: a new one would hardly be
 !> used, and the equilibrium it begins with would be found in steps that have no others behind them. Elements that are turned
 !> over, cutbacks, times, strokes and cuts do not wait for the end.
+!>
+!> Nor is a new mesh made where a node will stand at a sharp corner of a die in a few steps: while the corner is in a side the force
+!> is too large, and the new mesh, which has a node there, would begin with a drop of it (corner_sides). Errors, shapes, narrow
+!> contacts and sides that have grown wait for that, as long as no element is worn out.
 module triggers
   use acceptance, only: is_on_probation
-  use contact_quality, only: find_corner_side, measure_misfit, misfit_t
+  use contact_quality, only: measure_misfit, misfit_t
+  use corner_sides, only: corner_side_t, find_corner_side
   use cuts, only: is_trim, trim_trigger, web_trigger
   use fields, only: displacement_field, pilot_field
   use kinds, only: eps, wp
@@ -30,6 +35,9 @@ module triggers
   real(wp), parameter :: most_errors = 3.0_wp
   !> So many steps to the end are made on the mesh that is there.
   real(wp), parameter :: last_steps = 2.0_wp
+  !> A new mesh waits for a node that will stand at a sharp corner in so many steps, and no longer than until the scaled Jacobian of
+  !> an element is below this. Sides take some ten steps to pass a corner (decks/can_sharp), which are short at its middle.
+  real(wp), parameter :: soon = 40.0_wp, worn_out = 0.1_wp
 
 contains
 
@@ -38,24 +46,11 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(trigger_t), allocatable, intent(out) :: found(:)   !! (ntrigger)
-    type(trigger_t), allocatable :: others(:)
-    real(wp) :: limit
     integer :: k
 
     allocate (found(0))
     if (was_good(scene, solution) .and. .not. nears_end(scene, solution)) then
-      allocate (others(0))
-      if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, others)
-      if (scene%remesh%contact < never) call find_misfits(scene, solution, others)
-      if (scene%remesh%corner < never) call find_long_sides(scene, solution, others)
-      call find_narrow(scene, solution, others)
-      limit = max(scene%remesh%stress_error, worse*solution%estimate%first_stress)
-      ! where the mesh is due anyhow its error is a reason from the first strain on
-      if (solution%estimate%stress > limit) then
-        if (size(others) > 0 .or. error_counts(solution, limit, scene%remesh%error_strain)) &
-          call add(found, 'stress_error', solution%estimate%stress, limit)
-      end if
-      found = [found, others]
+      call find_wear(scene, solution, found)
     else if (any(abs(scene%remesh%shape) < never) .and. (was_good(scene, solution) .or. is_on_probation(solution%probation))) then
       call find_bad_shapes(scene, solution, found, only_turned_over=.true.)
     end if
@@ -72,6 +67,33 @@ contains
     end do
     call find_thin_webs(scene, solution, found)
   end subroutine find_triggers
+
+  !> Errors, shapes and contacts beyond their limits.
+  pure subroutine find_wear(scene, solution, found)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(trigger_t), allocatable, intent(inout) :: found(:)
+    type(trigger_t), allocatable :: shapes(:), misfits(:), others(:)
+    real(wp) :: limit, until_node, jacobian
+
+    allocate (shapes(0), misfits(0), others(0))
+    until_node = 0
+    jacobian = 1
+    if (any(abs(scene%remesh%shape) < never)) call find_bad_shapes(scene, solution, shapes, jacobian=jacobian)
+    if (scene%remesh%contact < never) call find_misfits(scene, solution, misfits)
+    if (scene%remesh%corner < never) call find_long_sides(scene, solution, others, until_node)
+    call find_narrow(scene, solution, others)
+    others = [shapes, misfits, others]
+    limit = max(scene%remesh%stress_error, worse*solution%estimate%first_stress)
+    ! where the mesh is due anyhow its error is a reason from the first strain on
+    if (solution%estimate%stress > limit) then
+      if (size(others) > 0 .or. error_counts(solution, limit, scene%remesh%error_strain)) &
+        call add(found, 'stress_error', solution%estimate%stress, limit)
+    end if
+    found = [found, others]
+    if (size(misfits) > 0 .or. jacobian < worn_out) return
+    if (until_node > 0 .and. until_node <= soon*min(solution%next_step, scene%strategy%largest_step)) found = found(:0)
+  end subroutine find_wear
 
   !> Webs that part (cards PIERC).
   pure subroutine find_thin_webs(scene, solution, found)
@@ -171,16 +193,18 @@ contains
   end function has_passed
 
   !> Shapes beyond their limits, when more elements than allowed have one: each criterion with its worst element.
-  pure subroutine find_bad_shapes(scene, solution, found, only_turned_over)
+  pure subroutine find_bad_shapes(scene, solution, found, only_turned_over, jacobian)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(trigger_t), allocatable, intent(inout) :: found(:)
     logical, intent(in), optional :: only_turned_over
+    real(wp), intent(out), optional :: jacobian   !! least scaled Jacobian of all elements [-]
     type(shape_places_t) :: places
     real(wp) :: measures(ncriteria), worst(ncriteria), x(2, size(scene%mesh%coordinates, 2)), share, first, limit
     integer :: group(ncriteria), element(ncriteria), g, e, k, n, nbad, nfirst
     logical :: bad(ncriteria), turned_over
 
+    if (present(jacobian)) jacobian = 1
     x = scene%mesh%coordinates
     if (scene%finite) x = x + solution%fields(displacement_field)%value
     places = shape_places()
@@ -203,6 +227,7 @@ contains
                          scene%remesh%shape))) nfirst = nfirst + 1
         end if
         turned_over = turned_over .or. .not. measures(scaled_jacobian) > 0
+        if (present(jacobian)) jacobian = min(jacobian, measures(scaled_jacobian))
         bad = is_bad(measures, worst)
         where (bad)
           worst = measures
@@ -244,18 +269,21 @@ contains
     end do
   end subroutine find_misfits
 
-  !> Sides that corners of dies press into and that have grown too long.
-  pure subroutine find_long_sides(scene, solution, found)
+  !> Sides that sharp corners of dies press into and that have grown too long, and the time until a node stands at such a corner.
+  pure subroutine find_long_sides(scene, solution, found, until_node)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(trigger_t), allocatable, intent(inout) :: found(:)
-    real(wp) :: growth
-    integer :: g, side
+    real(wp), intent(out) :: until_node   !! that is next; 0 where one does, huge where no corner is in a side [time]
+    type(corner_side_t) :: corner
+    integer :: g
 
+    until_node = huge(until_node)
     do g = 1, size(scene%groups)
       if (scene%groups(g)%die == 0 .or. scene%groups(g)%material == 0) cycle
-      call find_corner_side(scene, g, solution, growth, side)
-      if (growth > scene%remesh%corner) call add(found, 'corner_side', growth, scene%remesh%corner, g, side)
+      call find_corner_side(scene, g, solution, corner)
+      until_node = min(until_node, corner%until_node)
+      if (corner%growth > scene%remesh%corner) call add(found, 'corner_side', corner%growth, scene%remesh%corner, g, corner%side)
     end do
   end subroutine find_long_sides
 
