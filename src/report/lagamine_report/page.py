@@ -10,7 +10,7 @@ from .picture import Picture
 from .reader import Run
 from .remesh_section import remesh_section
 from .short import Check, checks, command
-from .tables import number
+from .tables import number, warnings_of
 from .unfinished import UNDER_WAY
 from .words import brief
 
@@ -114,6 +114,7 @@ def _cost(run: Run) -> List[Tuple[str, str]]:
 def _alerts(run: Run, judged: Iterable[Check]) -> str:
     lines = [escape(check.warning).replace(escape(check.name), f"<b>{escape(check.name)}</b>", 1)
              for check in judged if check.good is False]
+    lines += [escape(text) for text in warnings_of(run.summary, checks=False)]
     look = _look(run)
     if look == " open":
         lines.insert(0, "<b>The run is under way.</b> The page shows what it has written so far; made again, it shows more.")

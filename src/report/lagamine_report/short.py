@@ -8,7 +8,7 @@ from typing import Dict, List, Optional, TextIO, Union
 
 from .cycle import new_meshes
 from .reader import Run
-from .tables import number
+from .tables import number, warnings_of
 from .words import brief
 
 # Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear
@@ -173,7 +173,7 @@ def short_lines(run: Run) -> List[str]:
     for check in checks(run):
         if check.good is False:
             lines.append(f"  WARNING: {check.warning}")
-    lines += [f"  WARNING: {told['text']}" for told in s.get("warnings", [])]
+    lines += [f"  WARNING: {text}" for text in warnings_of(s, checks=False)]
     return [line.translate(PLAIN) for line in lines]
 
 
