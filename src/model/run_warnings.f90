@@ -1,7 +1,8 @@
 !> What speaks against the result of a run: its warnings, each with the operation it comes from.
 !>
 !> Those of earlier operations and meshes are part of the solution, so that the end of the run knows them all, whatever checkpoint
-!> it was resumed from. Of what is judged again at the end of every operation, by records or a state that go on, the last word counts.
+!> it was resumed from. Of what is judged again at the end of every operation, by records or a state that go on, the last word
+!> counts.
 module run_warnings
   use text, only: string_t
   implicit none

@@ -9,6 +9,7 @@ usage: run_warnings.py [-v] [-k]
 - What is judged again in each operation, a sheet that thins, is told once, with the last numbers.
 - A deck without operations has its warnings as ever, checks that do not hold among them.
 """
+import csv
 import os
 import subprocess
 import sys
@@ -122,16 +123,34 @@ def chain(checks):
     short = tool("lagareport", out)
     checks.that(short.returncode == DONE and all(f"WARNING: operation {operation}: {words}" in short.stdout for operation, words in EXPECTED),
                 "lagareport", short.stdout + short.stderr)
+    for die in ("upper", "punch"):
+        checks.that(f"force_y_{die}: last" in short.stdout, f"lagareport: force of {die}, which the last operation does not have", short.stdout)
     with open(os.path.join(out, "report.html"), encoding="utf-8") as file:
         page = file.read()
+    checks.that("<b>nan</b>" not in page.lower(), "the page has the largest forces of all dies")
     for operation, words in EXPECTED:
         checks.that(f"<p>operation {operation}: {words}" in page, f"page: {words}")
         checks.that(page.count(f"WARNING: operation {operation}: {words}") == 1 and f"WARNING: {words}" not in page,
                     f"from the listing, once: {words}")
-    study = tool("lagastudy", deck, "--ladder", "step=0.1,0.05", "--quantity", "plastic_work", "--out", checks.path("study"))
+    study = tool("lagastudy", deck, "--ladder", "step=0.1,0.05", "--quantity", "force_y_upper@max", "--quantity", "force_y_upper", "--out",
+                 checks.path("study"))
+    with open(checks.path("study", "study.csv"), encoding="utf-8") as file:
+        values = [float(row["value"]) for row in csv.DictReader(file)]
+    checks.that(len(values) == 4 and all(value > 0 for value in values), "lagastudy: forces of a die of the first operation", values)
     checks.that(study.returncode == DONE and "WARNING (step=0.1, step=0.05): operation press: law rough" in study.stdout, "lagastudy",
                 study.stdout + study.stderr)
     resumed(checks, deck)
+
+
+def pressed_last(checks):
+    """The last operation has contact: a check that does not hold is told once in the short result."""
+    deck, out = write(checks.path("two.lag"), CHAIN[:CHAIN.index("OPERA  release")] + "END\n"), checks.path("two")
+    result = run([deck, "--out", out])
+    if not checks.that(result.returncode == DONE, "two operations end", said(result)):
+        return
+    short = tool("lagareport", out).stdout
+    checks.that(short.count("at points of contact") + short.count("points of contact are deeper") == 1
+                and short.count("depth over allowed between") == 1 and "sides between" not in short, "depths once", short)
 
 
 def resumed(checks, deck):
@@ -200,6 +219,7 @@ def main():
     with_h5py()
     checks = Checks()
     chain(checks)
+    pressed_last(checks)
     again(checks)
     plain(checks)
     checks.end()

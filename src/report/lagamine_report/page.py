@@ -80,10 +80,10 @@ def _tiles(run: Run) -> str:
             tiles.append((brief(number(s[key]), 9), word))
     for die in run.die_names:
         columns = [run.history[name] for name in (f"force_y_{die}", f"force_x_{die}") if name in run.history]
-        columns = [column for column in columns if len(column.values)]
+        columns = [column for column in columns if len(column.known)]
         if columns:
-            column = max(columns, key=lambda column: abs(column.values).max())
-            tiles.append((brief(column.values[abs(column.values).argmax()]), f"largest {column.name}"))
+            column = max(columns, key=lambda column: abs(column.largest))
+            tiles.append((brief(column.largest), f"largest {column.name}"))
     for field in ("plastic_strain", "mises"):
         largest = run.largest_at_points(run.steps[-1], field) if run.steps else None
         if largest is not None:

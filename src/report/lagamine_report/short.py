@@ -166,9 +166,8 @@ def short_lines(run: Run) -> List[str]:
     for die in run.die_names:
         for axis in "yx":
             force = run.history.get(f"force_{axis}_{die}")
-            if force is not None and len(force.values) and abs(force.values).max() > 0:
-                worst = force.values[abs(force.values).argmax()]
-                lines.append(f"  {force.name}: last {brief(force.values[-1])}, largest {brief(worst)}")
+            if force is not None and abs(force.largest) > 0:
+                lines.append(f"  {force.name}: last {brief(force.known[-1])}, largest {brief(force.largest)}")
                 break
     for check in checks(run):
         if check.good is False:

@@ -34,6 +34,16 @@ class Column:
         """Name and unit as an axis shows them."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
+    @property
+    def known(self) -> np.ndarray:
+        """The numbers of steps that have one: not those of operations without this die or probe."""
+        return self.values[~np.isnan(self.values)]
+
+    @property
+    def largest(self) -> float:
+        """The number of the largest size; NaN where there is none."""
+        return float(self.known[np.abs(self.known).argmax()]) if len(self.known) else math.nan
+
 
 def read_text(path: str) -> str:
     """Text of a file. What is not UTF-8 (a title in an old deck) is read as Latin-1."""
@@ -88,14 +98,14 @@ def with_entries(summary: Dict[str, Any]) -> Dict[str, Any]:
 
 def warnings_of(summary: Dict[str, Any], checks: bool = True) -> List[str]:
     """What speaks against a result: the warnings in its summary, those of an operation before the last one with its name. Without
-    `checks`, those that do not repeat a check of the summary."""
+    `checks`, those that are no check of the end."""
     found = []
     given = summary.get("warnings")
     for told in given if isinstance(given, list) else []:
         if not isinstance(told, dict) or not isinstance(told.get("text"), str):
             continue
         earlier = isinstance(told.get("operation"), str) and told["operation"] != summary.get("operation")
-        if not checks and not earlier and "check" in told:
+        if not checks and told.get("check") in summary["advice"]:
             continue
         found.append(f"operation {told['operation']}: {told['text']}" if earlier else told["text"])
     return found

@@ -117,12 +117,15 @@ def make_runs(commands: Dict[str, List[str]], marks: Dict[str, Dict[str, object]
                 shutil.rmtree(folder)
             os.makedirs(folder)
             write(os.path.join(folder, MARK), json.dumps(marks[folder], indent=1).encode("utf-8"))
-            code, said, spent = call(commands[folder], at_work)
+            try:
+                code, said, spent = call(commands[folder], at_work)
+            except OSError as error:
+                raise ReportError(f"{commands[folder][0]}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
             write(os.path.join(folder, SPENT), json.dumps({"processor_s": spent}).encode("utf-8"))
         except FileExistsError as error:
             raise ReportError(f"{folder}: is there, and no run of a study", advice="move it away, or choose another --out") from error
         except OSError as error:
-            raise ReportError(f"{commands[folder][0]}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
+            raise ReportError(f"{folder}: cannot be written: {error.strerror}", EXIT_MACHINE) from error
         if code not in (0, 3):
             raise ReportError(f"{shlex.join(commands[folder])}: {said.strip() or f'ended with {code}'}", code)
         tell(folder)
