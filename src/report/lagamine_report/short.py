@@ -109,7 +109,7 @@ def penetration_checks(run: Run, values: Dict[str, float]) -> List[Check]:
             continue
         bound = values.get(name + BOUND, 1.0)
         good = ratio <= bound + RATIO_SLACK
-        advice = str(run.summary["advice"].get(name + OVER_ALLOWED, "as at the points" if ratio <= worst else ""))
+        advice = str(run.summary["advice"].get(name + OVER_ALLOWED, "as at the points" if ratio <= worst + RATIO_SLACK else ""))
         worst = max(worst, ratio)
         result.append(Check(f"depth over allowed {title}", f"{brief(ratio, 3)} (depth {brief(depth, 3)})", brief(bound, 3), good,
                             "" if good else advice))
