@@ -262,6 +262,9 @@ contains
       words = place_of(s%current)//', '//to_text(facts%remeshings)//' new mesh'
       if (facts%remeshings /= 1) words = words//'es'
       if (any_agreed(s%rows)) words = words//'; WARNING: '//wrong_before//' (cycle.csv)'
+      if (s%warnings > 0) words = words//'; '//to_text(s%warnings)//' warning'
+      if (s%warnings > 1) words = words//'s'
+      if (s%warnings > 0) words = words//' (summary.json)'
     end associate
   end function where_it_stands
 

@@ -53,7 +53,7 @@ contains
     call read_table(s%table, s%rows, error)
     if (allocated(error)) return
     call read_new_mesh(seen, s)
-    s%finished = is_finished(s)
+    call read_summary(s)
     if (s%ended%program == ended_remdata .and. s%ended%code == exit_machine) s%has_room = room_for_copy(s%stem)
   end subroutine read_situation
 
@@ -233,16 +233,16 @@ contains
     if (is_same) is_same = first == second
   end function is_same
 
-  !> `summary.json` reports the end of the scene, at the step of the checkpoint.
-  function is_finished(s) result(finished)
-    type(situation_t), intent(in) :: s
-    logical :: finished
+  !> Does `summary.json` report the end of the scene, at the step of the checkpoint? Its warnings are counted.
+  subroutine read_summary(s)
+    type(situation_t), intent(inout) :: s
     character(len=:), allocatable :: json
 
     call read_json(join_path(s%folder, 'summary.json'), json)
     associate (facts => s%current%facts)
-      finished = number('exit_code') == 0 .and. number('steps') == facts%step .and. number('remeshings') == facts%remeshings
+      s%finished = number('exit_code') == 0 .and. number('steps') == facts%step .and. number('remeshings') == facts%remeshings
     end associate
+    if (s%finished) s%warnings = max(0, number('warning_count'))
 
   contains
 
@@ -253,7 +253,7 @@ contains
       number = nint(json_number(json, name, -1.0_wp))
     end function number
 
-  end function is_finished
+  end subroutine read_summary
 
   !> Can the checkpoint be written once more?
   function room_for_copy(stem) result(room)

@@ -76,6 +76,8 @@ module cycle_situation
     type(try_row_t), allocatable :: rows(:)
     !> `summary.json` reports the end of the scene, at this step on this mesh.
     logical :: finished = .false.
+    !> Warnings that it has.
+    integer :: warnings = 0
     !> There is room on the disk for one more checkpoint.
     logical :: has_room = .true.
   end type situation_t

@@ -6,10 +6,12 @@ module law_numbers_check
   use text, only: add => add_text, string_t, to_text
   implicit none
   private
-  public :: judge_alpha, judge_friction, judge_yield
+  public :: judge_alpha, judge_friction, judge_strains, judge_yield
 
   !> Metals yield at less than this share of Young's modulus: the strongest steels and glassy metals at 0.01 to 0.02.
   real(wp), parameter :: largest_yield = 0.03_wp
+  !> Plastic strains of a table end below: tests of torsion, which go farthest, at 5.
+  real(wp), parameter :: largest_strain = 10.0_wp
   !> Dry metals rub at less, hot ones that stick at their shear flow stress (M).
   real(wp), parameter :: largest_friction = 1.0_wp
   !> Metals expand by 1e-5 to 3e-5 of their length for a degree, polymers by 3e-4.
@@ -40,6 +42,22 @@ contains
         //' of E, metals below '//to_text(largest_yield)//': are E and stresses in one unit?')
     end associate
   end subroutine judge_yield
+
+  !> A table that goes to strains that no test has: they are in percent, and the metal hardens a hundred times too slowly.
+  subroutine judge_strains(scene, m, warnings)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: m
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+
+    associate (material => scene%materials(m))
+      if (.not. allocated(material%curve)) return
+      if (size(material%curve) == 0) return
+      if (maxval(material%curve(1, :)) < largest_strain) return
+      call add(warnings, 'law '//material%name//': its table goes to a plastic strain of ' &
+               //to_text(maxval(material%curve(1, :)), 3)//', that of tests ends below '//to_text(largest_strain) &
+               //': is it in percent?')
+    end associate
+  end subroutine judge_strains
 
   !> A coefficient of friction that no pair of metals has, and nothing beside it that bounds friction: a percentage.
   subroutine judge_friction(scene, laws, m, warnings)

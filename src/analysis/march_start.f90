@@ -11,7 +11,7 @@ module march_start
   use estimator_parts, only: set_up_estimator
   use fields, only: displacement_field
   use history, only: open_history
-  use judge_remesh, only: limit_lines, refuse_remesh
+  use judge_remesh, only: limit_lines, refuse_remesh, taken_up_words
   use listing, only: list_balance, list_lines, list_note
   use memory_limits, only: require_memory
   use placed_walls, only: place_walls, placed_wall_t
@@ -19,7 +19,8 @@ module march_start
   use restore_balance, only: balance_t, keep_balance, restore_equilibrium
   use results, only: open_results, save_fields
   use run_record, only: run_t, save_all
-  use scene, only: scene_t
+  use run_warnings, only: add_warning
+  use scene, only: operation_of, scene_t
   use solution, only: present_coordinates, solution_t
   use step_outcome, only: outcome_t
   use sudden_loads, only: sudden_load_words
@@ -135,6 +136,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: late
     type(outcome_t) :: outcome
+    character(len=:), allocatable :: words
 
     allocate (run%balance)
     ! friction work that the new points of contact do not hold is kept apart
@@ -160,6 +162,9 @@ contains
     if (run%balance%restored) call estimate_stress(scene, run%estimator, solution)
     solution%estimate%first_stress = solution%estimate%stress
     if (run%balance%restored) call note_first_narrow(scene, solution)
+    words = taken_up_words(scene%remesher%accept, run%balance)
+    if (len(words) > 0) call add_warning(solution%warnings, operation_of(scene), &
+                                         'mesh '//to_text(scene%generation)//': '//words)
     call write_restart(run%stem//'.g'//two_digits(scene%generation)//'.restart.json', scene, solution, run%balance, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
   end subroutine balance_new_mesh

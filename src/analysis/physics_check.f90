@@ -8,7 +8,7 @@ module physics_check
   use fields, only: displacement_field
   use heat_check, only: check_exchanges, check_heat
   use law_api, only: law_t
-  use law_numbers_check, only: judge_alpha, judge_friction, judge_yield
+  use law_numbers_check, only: judge_alpha, judge_friction, judge_strains, judge_yield
   use scene, only: axisymmetric, group_t, lacks_mesh, role_side_load, scene_t
   use supports, only: free_motions
   use text, only: add => add_text, string_t
@@ -60,6 +60,7 @@ contains
     if (.not. lacks_mesh(scene)) call free_motions(scene, outlook, warnings)
     do g = 1, size(scene%materials)
       call judge_yield(scene, laws, g, warnings)
+      call judge_strains(scene, g, warnings)
       call judge_friction(scene, laws, g, warnings)
       call judge_alpha(scene, laws, g, warnings)
     end do

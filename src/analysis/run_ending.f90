@@ -12,13 +12,13 @@ module run_ending
   use crossed_bodies, only: warn_of_crossed_bodies
   use cut_report, only: warn_of_webs
   use errors, only: error_t, exit_done, exit_no_convergence
+  use failed_checks, only: list_failed_checks
   use fields, only: find_field
   use floating_bodies, only: warn_of_floating_bodies, warn_of_idle_dies
   use folded_bodies, only: warn_of_folds
   use folding_bodies, only: law_of_folds
   use heated_steels, only: warn_of_missing_austenite
   use held_steels, only: warn_of_held_steels
-  use judge_remesh, only: taken_up_words
   use kinds, only: wp
   use listing, only: close_listing, end_progress, list_lines, list_note
   use narrow_loads, only: narrow_words
@@ -27,8 +27,9 @@ module run_ending
   use run_facts, only: run_facts_t
   use run_options, only: run_options_t
   use run_record, only: run_t
+  use run_warnings, only: add_warning, join_warnings, warning_t
   use run_version, only: blas_words, version_text
-  use scene, only: scene_t
+  use scene, only: operation_of, scene_t
   use strategy, only: coupling_monolithic, scheme_tr_bdf2
   use solution, only: solution_t
   use standard_streams, only: print_line, print_lines
@@ -48,17 +49,19 @@ contains
   subroutine end_run(options, scene, solution, nbefore, run, facts, error)
     type(run_options_t), intent(in) :: options
     type(scene_t), intent(in) :: scene
-    type(solution_t), intent(in) :: solution
+    type(solution_t), intent(inout) :: solution   !! keeps the warnings of an operation that others follow
     integer, intent(in) :: nbefore   !! warnings that were reported before the run
     type(run_t), intent(inout) :: run
     type(run_facts_t), intent(inout) :: facts   !! with those warnings and seconds
     type(error_t), allocatable, intent(inout) :: error
     type(error_t), allocatable :: late
-    type(string_t), allocatable :: lines(:)
+    type(string_t), allocatable :: lines(:), again(:)
 
     call end_progress(run%listing)
     if (allocated(error)) call add_warnings(facts%warnings, error)
     call warn_at_end(scene, solution, run, facts%warnings)
+    allocate (again(0))
+    call warn_again(scene, solution, run, again)
     facts%version = version_text
     facts%deck = options%deck
     facts%deck_text = run%deck_text
@@ -74,6 +77,7 @@ contains
     if (run%has_new_meshes .or. (scene%accuracy%asked > 0 .and. allocated(options%fineness))) &
       call close_cost(options, scene, solution, run, facts, late)
     if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+    call gather_warnings(scene, others_follow(scene, run), again, solution, facts)
     call summary_lines(facts, scene, run%equations, solution, run%totals, lines)
     call list_lines(run%listing, lines)
     call close_listing(run%listing)
@@ -103,7 +107,43 @@ contains
     call close_listing(run%listing)
   end subroutine suspend_run
 
-  !> What the state at the end gives cause to say.
+  !> All that the summary tells. An operation that others follow tells what is its own, and hands it on with what it knows of those
+  !> before it: the summary of the run tells it all.
+  subroutine gather_warnings(scene, follows, again, solution, facts)
+    type(scene_t), intent(in) :: scene
+    logical, intent(in) :: follows              !! another operation does
+    type(string_t), intent(in) :: again(:)      !! (nwarning) that are judged again at the end of the next operation
+    type(solution_t), intent(inout) :: solution
+    type(run_facts_t), intent(inout) :: facts
+    type(warning_t), allocatable :: own(:), checks(:), all(:)
+    integer :: k, j
+
+    allocate (own(0))
+    do k = 1, size(facts%warnings)
+      call add_warning(own, operation_of(scene), facts%warnings(k)%s)
+    end do
+    do k = 1, size(again)
+      call add_warning(own, operation_of(scene), again(k)%s, again=.true.)
+    end do
+    call list_failed_checks(scene, solution, checks)
+    do k = 1, size(checks)
+      call add_warning(own, checks(k)%operation, checks(k)%text, checks(k)%check)
+    end do
+    call join_warnings(solution%warnings, own, all)
+    if (.not. follows) then
+      call move_alloc(all, facts%told)
+      return
+    end if
+    ! what an earlier operation has said is not said again, where nothing else is found
+    allocate (facts%told(0))
+    do k = 1, size(own)
+      if (any([(own(k)%text == all(j)%text, j=1, size(all))])) &
+        call add_warning(facts%told, own(k)%operation, own(k)%text, own(k)%check, own(k)%again)
+    end do
+    call move_alloc(all, solution%warnings)
+  end subroutine gather_warnings
+
+  !> What records of this operation or run, and the state at its end, give cause to say.
   subroutine warn_at_end(scene, solution, run, warnings)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -111,30 +151,36 @@ contains
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
     character(len=:), allocatable :: words
 
-    if (allocated(run%balance)) then
-      words = taken_up_words(scene%remesher%accept, run%balance)
-      if (len(words) > 0) call add_text(warnings, words)
-    end if
     call warn_of_confinement(scene, solution, warnings)
     words = narrow_words(scene, solution)
     if (len(words) > 0) call add_text(warnings, words)
     call warn_of_unsettled_contact(scene, solution, warnings)
+    if (run%exit_code /= exit_done) return
+    call warn_of_webs(scene, solution, warnings)
+    call warn_of_floating_bodies(scene, run%equations%laws, run%equations%loose, solution, warnings)
+    call warn_of_idle_dies(scene, run%equations, solution, run%totals%volume, warnings)
+  end subroutine warn_at_end
+
+  !> What is judged by a state and by records that go on from one operation to the next: each of them says it anew.
+  subroutine warn_again(scene, solution, run, warnings)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(run_t), intent(in) :: run
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
+
     call warn_of_passed_planes(scene, solution, warnings)
     if (solution%unstable_steps > 0) call add_text(warnings, 'equilibria are not stable in '//to_text(solution%unstable_steps) &
       //' of '//to_text(solution%step)//' steps, first at time '//to_text(solution%unstable_from, 6)//': a perfect part stays ' &
       //'in them, any other buckles or necks (move nodes by a thousandth of the thickness to see how)')
     if (run%exit_code /= exit_done) return
     call warn_of_coarse_heat(solution, warnings)
-    call warn_of_webs(scene, solution, warnings)
     call warn_of_folds(scene, warnings)
     call warn_of_thinned_sheets(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)
     call warn_of_held_steels(scene, solution, warnings)
     call warn_of_absolute_cold(scene, solution, warnings)
-    call warn_of_floating_bodies(scene, run%equations%laws, run%equations%loose, solution, warnings)
     call warn_of_crossed_bodies(scene, run%equations%free_sides, solution, warnings)
-    call warn_of_idle_dies(scene, run%equations, solution, run%totals%volume, warnings)
-  end subroutine warn_at_end
+  end subroutine warn_again
 
   !> The summary on standard output; with progress, only what is new in it at the end of a run.
   subroutine print_end(options, scene, exit_code, facts, nbefore, lines, error)
@@ -238,6 +284,15 @@ contains
                      .and. scene%strategy%coupling /= coupling_monolithic
   end function by_euler
 
+  !> An operation has come to its end, and others follow.
+  pure function others_follow(scene, run) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(run_t), intent(in) :: run
+    logical :: yes
+
+    yes = run%exit_code == exit_done .and. scene%operation < scene%operations
+  end function others_follow
+
   !> The summary of an operation that others follow has a name of its own.
   pure function summary_name(scene, run) result(name)
     type(scene_t), intent(in) :: scene
@@ -245,7 +300,7 @@ contains
     character(len=:), allocatable :: name
 
     name = 'summary.json'
-    if (run%exit_code == exit_done .and. scene%operation < scene%operations) name = 'summary.'//scene%operation_name//'.json'
+    if (others_follow(scene, run)) name = 'summary.'//scene%operation_name//'.json'
   end function summary_name
 
 end module run_ending

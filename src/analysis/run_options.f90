@@ -85,6 +85,8 @@ contains
         call value_of(word, k, options%met, error)
       case ('-p')
         call value_of('-p', k, word, error)
+        if (allocated(error)) exit
+        if (index(word, '=') < 2) call fail(error, exit_input, '-p '//word//': expected NAME=VALUE')
         options%overrides = [options%overrides, string_t(word)]
       case ('--threads')
         call value_of('--threads', k, word, error)

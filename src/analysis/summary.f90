@@ -82,13 +82,7 @@ contains
     call json%add('symmetric', all(equations%solves%pattern%symmetric))
     call json%add('factorisations', sum(equations%solves%solver%factorised))
     call json%add('factorisations_spared', sum(equations%solves%solver%reused))
-    call json%begin_array('warnings')
-    do k = 1, size(facts%warnings)
-      call json%begin_object()
-      call json%add('text', facts%warnings(k)%s)
-      call json%end_object()
-    end do
-    call json%end_array()
+    call add_warnings(json, facts)
     call add_wall_reactions(json, scene, solution)
     call add_steels(json, scene, equations)
     call add_effects(json, scene, equations)
@@ -111,6 +105,26 @@ contains
     call json%end_object()
     call json%write_file(path, error)
   end subroutine write_summary
+
+  !> What speaks against the result: what the listing tells as WARNING.
+  subroutine add_warnings(json, facts)
+    type(json_t), intent(inout) :: json
+    type(run_facts_t), intent(in) :: facts
+    integer :: k
+
+    call json%add('warning_count', size(facts%told))
+    call json%begin_array('warnings')
+    do k = 1, size(facts%told)
+      associate (warning => facts%told(k))
+        call json%begin_object()
+        call json%add('text', warning%text)
+        if (len(warning%operation) > 0) call json%add('operation', warning%operation)
+        if (len(warning%check) > 0) call json%add('check', warning%check)
+        call json%end_object()
+      end associate
+    end do
+    call json%end_array()
+  end subroutine add_warnings
 
   !> Where the work came from and where it went. Of the full circumference when the scene is axisymmetric.
   subroutine add_work(json, scene, solution)

@@ -113,8 +113,10 @@ contains
     call add('path_error_motion', motion_advice(solution%path))
     call add('path_error_stress', stress_advice(solution%path))
     if (has_body_springs(scene)) call add('spring_share', spring_advice(scene, solution))
-    call add('max_penetration_over_allowed', advice_at_points(scene, solution))
-    call add('max_penetration_sampled_over_allowed', advice_between_points(scene, solution))
+    if (size(scene%dies) > 0) then
+      call add('max_penetration_over_allowed', advice_at_points(scene, solution))
+      call add('max_penetration_sampled_over_allowed', advice_between_points(scene, solution))
+    end if
     call json%end_object()
 
   contains

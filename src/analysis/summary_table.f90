@@ -3,19 +3,19 @@ module summary_table
   use closing_table, only: closing_lines
   use cut_report, only: lines_of_cuts
   use elem_api, only: totals_t
-  use energy_balance, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
+  use energy_balance, only: damped_share, energy_imbalance
   use equations, only: equations_t
   use heat_books, only: has_heat, heat_imbalance
   use history, only: circumference
   use kinds, only: wp
-  use path_advice, only: motion_advice, stress_advice
   use path_record, only: motion_error, stress_error
   use pending_heat, only: pending
-  use penetration_advice, only: advice_at_points, advice_between_points, sides_that_span, states_penetration
+  use penetration_advice, only: sides_that_span, states_penetration
   use run_facts, only: run_facts_t, unloaded_drift
-  use scene, only: scene_t, solid_elements
+  use run_warnings, only: with_operation
+  use scene, only: operation_of, scene_t, solid_elements
   use solution, only: solution_t
-  use spring_check, only: has_body_springs, spring_advice, spring_force, spring_share
+  use spring_check, only: has_body_springs, spring_force, spring_share
   use strategy, only: coupling_once
   use system, only: cpu_seconds, peak_memory_mb
   use text, only: add_text, string_t, to_text
@@ -48,10 +48,11 @@ contains
     if (has_heat(scene)) call add_heat(scene, equations, solution, lines)
     if (scene%follows_path) call add_path(solution, lines)
     if (has_body_springs(scene)) call add_springs(scene, solution, lines)
-    do t = 1, size(facts%warnings)
-      call add_text(lines, '  WARNING: '//facts%warnings(t)%s)
-    end do
     call add_contact(scene, solution, lines)
+    call with_operation(facts%told, operation_of(scene), table)
+    do t = 1, size(table)
+      call add_text(lines, '  WARNING: '//table(t)%s)
+    end do
     call list_wall_reactions(scene, solution, lines)
     call add_text(lines, '  '//to_text(sum(equations%solves%neq))//' equations, '//to_text(solid_elements(scene))//' elements, ' &
                   //to_text(facts%threads)//' threads, '//to_text(facts%wall, 4)//' s on the wall, ' &
@@ -71,16 +72,12 @@ contains
     type(solution_t), intent(in) :: solution
     type(totals_t), intent(in) :: totals
     type(string_t), allocatable, intent(inout) :: lines(:)
-    character(len=:), allocatable :: damped
 
     call add_text(lines, '  volume drift '//percent(totals%volume/solution%initial_volume - 1)//' (without elastic strain ' &
                   //percent(unloaded_drift(solution, totals))//'), energy imbalance '//percent(energy_imbalance(solution)) &
                   //', worst linear residual '//to_text(solution%worst_linear_residual, 2))
-    call warn(lines, 'energy imbalance '//percent(energy_imbalance(solution)), imbalance_advice(solution))
-    damped = percent(damped_share(solution))//' of the energy that passed'
-    if (solution%work%damping > 0) &
-      call add_text(lines, '  damping of steps that had no equilibrium near took '//damped)
-    call warn(lines, 'damping '//damped, damping_advice(solution))
+    if (solution%work%damping > 0) call add_text(lines, '  damping of steps that had no equilibrium near took ' &
+                                                 //percent(damped_share(solution))//' of the energy that passed')
   end subroutine add_balances
 
   !> Heat that was taken up, what no step has released yet, what accuracy in time was had, and temperatures that cannot be there.
@@ -122,8 +119,6 @@ contains
       call add_text(lines, '  errors of the path within steps: motion '//percent(motion_error(path))//' in sum, stress ' &
                     //percent(stress_error(path))//' at the end, '//percent(path%stress_worst)//' at worst; ' &
                     //to_text(path%shortened)//' attempts shortened for them, '//to_text(path%above)//' steps above the bounds')
-      call warn(lines, 'error of the motion by the path within steps '//percent(motion_error(path)), motion_advice(path))
-      call warn(lines, 'error of the stress by the path within steps '//percent(stress_error(path)), stress_advice(path))
     end associate
   end subroutine add_path
 
@@ -132,12 +127,9 @@ contains
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
     type(string_t), allocatable, intent(inout) :: lines(:)
-    character(len=:), allocatable :: share
 
-    share = percent(spring_share(scene, solution))//' of the largest force'
     call add_text(lines, '  weak springs of bodies: force '//to_text(circumference(scene)*spring_force(scene, solution), 3) &
-                  //' at the end, '//share)
-    call warn(lines, 'weak springs carry '//share, spring_advice(scene, solution))
+                  //' at the end, '//percent(spring_share(scene, solution))//' of the largest force')
   end subroutine add_springs
 
   !> Penetrations.
@@ -156,18 +148,8 @@ contains
     if (solution%penalty_share > 1) &
       call add_text(lines, '  elastic bodies bear much at contact, and press with '//to_text(solution%penalty_share, 3) &
                     //' times the penalties of PENETR')
-    call warn(lines, 'points of contact are deeper in a die than allowed', advice_at_points(scene, solution))
-    call warn(lines, 'sides between points of contact are deeper in a die than allowed', advice_between_points(scene, solution))
     if (len(sides_that_span(scene, solution)) > 0) call add_text(lines, '  '//sides_that_span(scene, solution))
   end subroutine add_contact
-
-  !> What is wrong and what to do, where there is an advice.
-  subroutine warn(lines, what, advice)
-    type(string_t), allocatable, intent(inout) :: lines(:)
-    character(len=*), intent(in) :: what, advice
-
-    if (len(advice) > 0) call add_text(lines, '  WARNING: '//what//': '//advice)
-  end subroutine warn
 
   !> A share in percent.
   function percent(share) result(words)

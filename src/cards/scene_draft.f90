@@ -82,6 +82,12 @@ contains
       end if
     end do
     if (k > 0 .or. .not. present(expected)) return
+    do i = 1, size(deck%cards)
+      if (deck%cards(i)%keyword /= 'OPERA') cycle
+      call diagnostics%add(head_location(deck%cards(i)), 'OPERA', 'neither this operation nor what all of them share has a card ' &
+                           //keyword//': expected '//expected)
+      return
+    end do
     call diagnostics%register(deck%path, where%file)
     call diagnostics%add(where, keyword, 'the deck has no such card: expected '//expected)
   end subroutine only_card

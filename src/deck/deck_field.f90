@@ -5,7 +5,8 @@
 module deck_field
   use kinds, only: wp
   use diagnostics, only: diagnostics_t, location_t
-  use text, only: to_text, upper_case
+  use foreign_characters, only: foreign_words
+  use text, only: upper_case
   implicit none
   private
   public :: deck_field_t, scan_fields, first_word, comment_column, is_title, keyword_letters, letters, digits
@@ -150,7 +151,7 @@ contains
     do i = first, last
       code = ichar(line(i:i))
       if (code < 32 .or. code > 126) then
-        call record(i, 'byte '//to_text(code)//' is not a printable ASCII character')
+        call record(i, foreign_words(line, i))
         return
       end if
       if (i > first .and. .not. field%quoted .and. scan(line(i:i), quotes) == 1) then

@@ -2,6 +2,7 @@
 module deck_lines
   use deck_field, only: first_word, keyword_letters
   use diagnostics, only: diagnostics_t, location_t
+  use foreign_characters, only: foreign_words
   use source_lines, only: source_t
   use text, only: string_t, to_text, upper_case
   implicit none
@@ -112,7 +113,7 @@ contains
     there%column = max(bad, 1)
     if (bad > 0) then
       if (ichar(word(bad:bad)) < 32 .or. ichar(word(bad:bad)) > 126) then
-        call diagnostics%add(there, '', 'byte '//to_text(ichar(word(bad:bad)))//' is not a printable ASCII character')
+        call diagnostics%add(there, '', foreign_words(word, bad))
       else
         call diagnostics%add(there, '', 'a keyword in column 1 has capital letters and digits, found '''//word// &
                              '''; a data row starts with a blank')

@@ -45,6 +45,7 @@ contains
     type(source_t), intent(inout) :: source
     type(diagnostics_t), intent(inout) :: diagnostics
     character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+    character(len=*), parameter :: carriage_return = char(13)
     !> Both orders of the bytes of UTF-16.
     character(len=2), parameter :: wide_mark(2) = [char(255)//char(254), char(254)//char(255)]
     integer :: first, past, line, n
@@ -53,6 +54,17 @@ contains
     if (any(index(content, wide_mark) == 1)) then
       source%complete = .false.
       call diagnostics%add(location_t(file, 1, 1), '', 'the file is written in UTF-16: save it as plain text (UTF-8)')
+      return
+    end if
+    if (is_binary(content)) then
+      source%complete = .false.
+      call diagnostics%add(location_t(file, 1, 1), '', 'the file is no text: expected a deck, or a file that one includes')
+      return
+    end if
+    if (index(content, carriage_return) > 0 .and. index(content, new_line('a')) == 0) then
+      source%complete = .false.
+      call diagnostics%add(location_t(file, 1, index(content, carriage_return)), '', 'lines of the file end with carriage ' &
+                           //'returns alone: save it with the line ends of Unix or Windows')
       return
     end if
     first = 1
@@ -92,6 +104,21 @@ contains
       end select
     end do
   end subroutine take_lines
+
+  !> Results, archives and documents of word processors have many bytes 0, a text none.
+  pure function is_binary(content) result(binary)
+    character(len=*), intent(in) :: content
+    logical :: binary
+    integer, parameter :: few = 3
+    integer :: k, n
+
+    n = 0
+    do k = 1, len(content)
+      if (content(k:k) == char(0)) n = n + 1
+      if (n > few) exit
+    end do
+    binary = n > few
+  end function is_binary
 
   !> The END of an included file is in capital letters and alone on its line, as that of a deck.
   subroutine judge_end(text, where, diagnostics)

@@ -190,6 +190,7 @@ contains
     logical, intent(in) :: control
     real(wp), intent(in) :: xi(:), committed(:, :)
     real(wp), intent(inout) :: trial(:, :)
+    real(wp) :: before(3), now(3)   ! areas of the points [per radian when axisymmetric]
     integer :: n
 
     n = contact_block(.true., size(trial, 1))
@@ -197,8 +198,10 @@ contains
     call rest(trial(:n, :))
     call rest(trial(n + 1:2*n, :))
     if (control) then
-      trial(at_work, :) = committed(at_work, :)*areas_with_control(side%section - side%thickening, side%x) &
-                          /areas_with_control(side%section, side%x + reshape(side%du([1, 4, 2, 5, 3, 6]), [2, 3]))
+      before = areas_with_control(side%section - side%thickening, side%x)
+      now = areas_with_control(side%section, side%x + reshape(side%du([1, 4, 2, 5, 3, 6]), [2, 3]))
+      ! a side on the axis has none
+      where (now > 0) trial(at_work, :) = committed(at_work, :)*before/now
     else
       trial(at_work, :) = committed(at_work, :)*thinning(xi, xi, side%section, side%thickening, side%x, side%du(1:6))
     end if

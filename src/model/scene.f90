@@ -20,7 +20,8 @@ module scene
   use weld_sources, only: weld_source_t
   implicit none
   private
-  public :: scene_t, group_t, wall_t, plane_state_names, host_of, is_later_operation, is_solid, lacks_mesh, pilot_at, solid_elements
+  public :: scene_t, group_t, wall_t, plane_state_names, host_of, is_later_operation, is_solid, lacks_mesh, operation_of, &
+    pilot_at, solid_elements
   public :: role_body, role_second, role_contact, role_side_load, role_volume_load, role_spring, role_heat_contact, role_die_heat
   public :: role_load_factor
   public :: plane_strain, axisymmetric, plane_stress, generalised_plane_strain
@@ -149,6 +150,15 @@ module scene
   end type scene_t
 
 contains
+
+  !> Name of the operation; empty in a deck without any.
+  pure function operation_of(scene) result(name)
+    type(scene_t), intent(in) :: scene
+    character(len=:), allocatable :: name
+
+    name = ''
+    if (allocated(scene%operation_name)) name = scene%operation_name
+  end function operation_of
 
   !> A body: it has elements of its own, and counts once for contours, errors, results and remeshing.
   elemental function is_solid(group) result(yes)

@@ -14,6 +14,7 @@ module solution
   use path_record, only: path_record_t, start_path
   use remesher_options, only: number_of_cuts
   use remeshing, only: estimate_t
+  use run_warnings, only: warning_t
   use scene, only: group_t, is_solid, role_body, role_second, scene_t, solid_elements
   use state_variables, only: find_variable, total_components
   use work_books, only: work_t
@@ -117,6 +118,8 @@ module solution
     type(estimate_t) :: estimate
     !> What came of the cuts of the scene (ncut).
     type(cut_record_t), allocatable :: cuts(:)
+    !> Warnings of earlier operations, and of new meshes (nwarning).
+    type(warning_t), allocatable :: warnings(:)
   end type solution_t
 
 contains
@@ -174,6 +177,7 @@ contains
               solution%estimate%strain_sums(2, nsolid), source=0.0_wp)
     allocate (solution%estimate%triggers(0))
     allocate (solution%cuts(number_of_cuts(scene%remesher)))
+    allocate (solution%warnings(0))
   end subroutine start_solution
 
   !> A formulation in which phases form at temperatures that are solved for.

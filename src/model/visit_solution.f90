@@ -8,6 +8,7 @@ module visit_solution
   use narrow_record, only: narrow_record_t
   use pairs, only: pairs_t
   use path_record, only: path_record_t
+  use run_warnings, only: warning_t
   use solution, only: group_state_t, solution_t
   use visit_cuts, only: visit_cut_records
   use visit_estimate, only: visit_estimate_members
@@ -17,6 +18,9 @@ module visit_solution
   implicit none
   private
   public :: visit_solution_members
+
+  !> Warnings of earlier operations and meshes at most.
+  integer, parameter :: most_warnings = 10000
 
 contains
 
@@ -95,6 +99,7 @@ contains
     call visit_estimate_members(visitor, self%estimate)
     call visitor%leave('estimate')
     call visit_cut_records(visitor, self%cuts)
+    call visit_warnings(visitor, self%warnings)
     do k = 1, size(self%fields)
       call visitor%enter('fields/'//self%fields(k)%name)
       call visit_field_values(visitor, self%fields(k))
@@ -113,6 +118,35 @@ contains
       call visitor%leave('pairs')
     end do
   end subroutine visit_solution_members
+
+  subroutine visit_warnings(visitor, warnings)
+    class(visitor_t), intent(inout) :: visitor
+    type(warning_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
+    integer :: k, n
+
+    n = 0
+    if (allocated(warnings)) n = size(warnings)
+    call visitor%list('warnings', n, most_warnings, carried=kept)
+    if (allocated(warnings)) then
+      if (size(warnings) /= n) deallocate (warnings)
+    end if
+    if (.not. allocated(warnings)) allocate (warnings(n))
+    do k = 1, n
+      call visitor%enter_item('warnings', k)
+      call visit_warning(visitor, warnings(k))
+      call visitor%leave('warnings')
+    end do
+  end subroutine visit_warnings
+
+  subroutine visit_warning(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(warning_t), intent(inout) :: self
+
+    call visitor%member('operation', self%operation, kept)
+    call visitor%member('check', self%check, kept)
+    call visitor%member('text', self%text, kept)
+    call visitor%member('again', self%again, kept)
+  end subroutine visit_warning
 
   subroutine visit_heat_record(visitor, self)
     class(visitor_t), intent(inout) :: visitor

@@ -201,11 +201,13 @@ contains
 
   !> A list begins: how many entries it has. A visitor that fills an empty list says how many there shall be, `most` at most; where
   !> a list is there already, `most` is absent and the number may not change.
-  subroutine list(self, name, n, most)
+  subroutine list(self, name, n, most, carried)
     class(visitor_t), intent(inout) :: self
     character(len=*), intent(in) :: name
     integer, intent(inout) :: n
     integer, intent(in), optional :: most
+    character(len=*), intent(in), optional :: carried   !! how a remesh carries the length over
+    character(len=:), allocatable :: way
     integer :: low, high
 
     low = n
@@ -214,8 +216,10 @@ contains
       low = 0
       high = most
     end if
+    way = not_carried
+    if (present(carried)) way = carried
     call self%enter(name)
-    call self%member('count', n, not_carried, low=low, high=high)
+    call self%member('count', n, way, low=low, high=high)
     call self%leave(name)
     call self%listed(name, n)
   end subroutine list

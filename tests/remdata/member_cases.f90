@@ -10,6 +10,7 @@ module member_cases
   use loads, only: fixation_t
   use remesher_options, only: by_gmsh, own_mesh_t
   use remeshing, only: trigger_t
+  use run_warnings, only: add_warning
   use scene, only: group_t, role_second, scene_t
   use solution, only: solution_t
   use state_variables, only: state_variable, state_variable_t, transfer_contact, transfer_recompute, transfer_scalar, &
@@ -254,6 +255,8 @@ contains
     solution%estimate%triggers(1)%name = 'aspect_ratio'
     solution%estimate%triggers(1) = trigger_t('aspect_ratio', 12.5_wp, 10.0_wp, 1, 2)
     solution%estimate%triggers(2) = trigger_t('time', 0.5_wp, 0.4_wp, 0, 0)
+    call add_warning(solution%warnings, 'press', 'billet has thinned to 9 %', 'a check', again=.true.)
+    call add_warning(solution%warnings, 'release', 'the die is deep', 'another', again=.true.)
   end subroutine full_solution
 
   subroutine fill(filler, solution)

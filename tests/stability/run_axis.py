@@ -159,6 +159,36 @@ def die_on_the_axis(checks):
         checks.that(least_place(runs[1]) >= -DEPTH, "die on the axis: nothing crosses it")
 
 
+def sides_on_the_axis(checks):
+    """A billet whose sides all face a flat die, those on the axis too, where there is no area: the same bits as without them, whatever the points."""
+    deck = """TITLE  Billet under a flat die
+STATE  AXISYM
+KINEM  LOG
+BLOCK  billet PL8LS 4 steel
+   0. 0.   10. 0.   10. 15.   0. 15.
+   4 1.   6 1.
+LAW    steel EPLA
+   200000. 0.3
+   LINEAR 700. 300.
+LAW    rough COUL2D
+   PHI 0.2
+DIE    upper PILOT 0. 15.
+   SEGM 30. 15.   -1. 15.
+CNT2D  billet SIDES upper POINTS rough
+FIXED  billet 1 Y
+FIXED  billet 4 X
+MOVE   upper Y press
+LIC    press
+   0. 0.   1. -3.
+STRAT  0.02 1.E-5 0.05   4 3
+END
+"""
+    for points in ("", "-3", "BEZIER"):
+        runs = [Run(checks, f"sides{len(sides)}{points}", deck.replace("SIDES", sides).replace("POINTS", points)) for sides in ("2 3", "2 3 4")]
+        if all(run.ok for run in runs):
+            checks.that(np.array_equal(runs[0].history["force_y_upper"], runs[1].history["force_y_upper"]), f"sides on the axis {points}: the same force")
+
+
 def billet_without_support(checks):
     """The billet of upsetting_remesh whose axis no card holds, on several meshes, against the one with its support."""
     with open(os.path.join(SOURCE, "decks", "upsetting_remesh", "upsetting_remesh.lag"), encoding="utf-8") as file:
@@ -228,6 +258,7 @@ def main():
     closed_bores(checks)
     closed_form(checks)
     die_on_the_axis(checks)
+    sides_on_the_axis(checks)
     billet_without_support(checks)
     pointed_die(checks)
     resumed(checks)

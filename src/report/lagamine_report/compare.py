@@ -60,9 +60,9 @@ def forces_picture(runs: Sequence[Run], labels: Sequence[str]) -> Optional[Pictu
     for k, run in enumerate(runs):
         for die in run.die_names:
             columns = [run.history[name] for name in (f"force_y_{die}", f"force_x_{die}") if name in run.history]
-            columns = [column for column in columns if len(column.values)]
+            columns = [column for column in columns if len(column.known)]
             if columns:
-                curves.setdefault(die, []).append((k, die_abscissa(run.history, die), max(columns, key=lambda c: np.nanmax(np.abs(c.values)))))
+                curves.setdefault(die, []).append((k, die_abscissa(run.history, die), max(columns, key=lambda c: abs(c.largest))))
     return _panels("forces", "the larger component, over the larger motion of the die", curves, labels)
 
 
@@ -139,8 +139,8 @@ def _facts(runs: Sequence[Run], labels: Sequence[str]) -> str:
     for die in dict.fromkeys(die for run in runs for die in run.die_names):
         found = []
         for run in runs:
-            columns = [run.history[name].values for name in (f"force_y_{die}", f"force_x_{die}") if name in run.history]
-            values = [value[np.abs(value).argmax()] for value in columns if len(value)]
+            columns = [run.history[name] for name in (f"force_y_{die}", f"force_x_{die}") if name in run.history]
+            values = [column.largest for column in columns if len(column.known)]
             found.append(max(values, key=abs) if values else None)
         rows.append(("", (escape(f"largest force on {die}"), *(_cell(cell, found[0]) for cell in found))))
     for field in ("plastic_strain", "mises"):

@@ -10,7 +10,7 @@ from .picture import Picture
 from .reader import Run
 from .remesh_section import remesh_section
 from .short import Check, checks, command
-from .tables import number
+from .tables import number, warnings_of
 from .unfinished import UNDER_WAY
 from .words import brief
 
@@ -80,10 +80,10 @@ def _tiles(run: Run) -> str:
             tiles.append((brief(number(s[key]), 9), word))
     for die in run.die_names:
         columns = [run.history[name] for name in (f"force_y_{die}", f"force_x_{die}") if name in run.history]
-        columns = [column for column in columns if len(column.values)]
+        columns = [column for column in columns if len(column.known)]
         if columns:
-            column = max(columns, key=lambda column: abs(column.values).max())
-            tiles.append((brief(column.values[abs(column.values).argmax()]), f"largest {column.name}"))
+            column = max(columns, key=lambda column: abs(column.largest))
+            tiles.append((brief(column.largest), f"largest {column.name}"))
     for field in ("plastic_strain", "mises"):
         largest = run.largest_at_points(run.steps[-1], field) if run.steps else None
         if largest is not None:
@@ -114,6 +114,7 @@ def _cost(run: Run) -> List[Tuple[str, str]]:
 def _alerts(run: Run, judged: Iterable[Check]) -> str:
     lines = [escape(check.warning).replace(escape(check.name), f"<b>{escape(check.name)}</b>", 1)
              for check in judged if check.good is False]
+    lines += [escape(text) for text in warnings_of(run.summary, checks=False)]
     look = _look(run)
     if look == " open":
         lines.insert(0, "<b>The run is under way.</b> The page shows what it has written so far; made again, it shows more.")

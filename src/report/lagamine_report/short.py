@@ -8,7 +8,7 @@ from typing import Dict, List, Optional, TextIO, Union
 
 from .cycle import new_meshes
 from .reader import Run
-from .tables import number
+from .tables import number, warnings_of
 from .words import brief
 
 # Above these the page warns: shares of the work, of the volume and of what all remeshings change of it, what a sound linear
@@ -109,7 +109,7 @@ def penetration_checks(run: Run, values: Dict[str, float]) -> List[Check]:
             continue
         bound = values.get(name + BOUND, 1.0)
         good = ratio <= bound + RATIO_SLACK
-        advice = str(run.summary["advice"].get(name + OVER_ALLOWED, "as at the points" if ratio <= worst else ""))
+        advice = str(run.summary["advice"].get(name + OVER_ALLOWED, "as at the points" if ratio <= worst + RATIO_SLACK else ""))
         worst = max(worst, ratio)
         result.append(Check(f"depth over allowed {title}", f"{brief(ratio, 3)} (depth {brief(depth, 3)})", brief(bound, 3), good,
                             "" if good else advice))
@@ -166,14 +166,13 @@ def short_lines(run: Run) -> List[str]:
     for die in run.die_names:
         for axis in "yx":
             force = run.history.get(f"force_{axis}_{die}")
-            if force is not None and len(force.values) and abs(force.values).max() > 0:
-                worst = force.values[abs(force.values).argmax()]
-                lines.append(f"  {force.name}: last {brief(force.values[-1])}, largest {brief(worst)}")
+            if force is not None and abs(force.largest) > 0:
+                lines.append(f"  {force.name}: last {brief(force.known[-1])}, largest {brief(force.largest)}")
                 break
     for check in checks(run):
         if check.good is False:
             lines.append(f"  WARNING: {check.warning}")
-    lines += [f"  WARNING: {told['text']}" for told in s.get("warnings", [])]
+    lines += [f"  WARNING: {text}" for text in warnings_of(s, checks=False)]
     return [line.translate(PLAIN) for line in lines]
 
 

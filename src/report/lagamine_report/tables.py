@@ -16,6 +16,7 @@ REAL = r"([0-9.]+(?:[eE][-+]?[0-9]+)?)"
 CALL = re.compile(rf"  [0-9]+ equations, .* {REAL} s on the wall, .* {REAL} MB")
 # Lines with which the table begins that a call ends with where more is to come, and the part that goes on from it.
 STOPPED, RESUMED, NEW_MESH_DUE = "stopped: ", "resumed from ", "a new mesh is due"
+OF_OPERATION = re.compile("WARNING: operation [^ :]+: ")
 # Objects of a summary that the page looks into.
 ENTRIES = ("effects", "seconds", "checks", "energy", "advice")
 
@@ -32,6 +33,16 @@ class Column:
     def title(self) -> str:
         """Name and unit as an axis shows them."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    @property
+    def known(self) -> np.ndarray:
+        """The numbers of steps that have one: not those of operations without this die or probe."""
+        return self.values[~np.isnan(self.values)]
+
+    @property
+    def largest(self) -> float:
+        """The number of the largest size; NaN where there is none."""
+        return float(self.known[np.abs(self.known).argmax()]) if len(self.known) else math.nan
 
 
 def read_text(path: str) -> str:
@@ -85,6 +96,21 @@ def with_entries(summary: Dict[str, Any]) -> Dict[str, Any]:
     return summary
 
 
+def warnings_of(summary: Dict[str, Any], checks: bool = True) -> List[str]:
+    """What speaks against a result: the warnings in its summary, those of an operation before the last one with its name. Without
+    `checks`, those that are no check of the end."""
+    found = []
+    given = summary.get("warnings")
+    for told in given if isinstance(given, list) else []:
+        if not isinstance(told, dict) or not isinstance(told.get("text"), str):
+            continue
+        earlier = isinstance(told.get("operation"), str) and told["operation"] != summary.get("operation")
+        if not checks and told.get("check") in summary["advice"]:
+            continue
+        found.append(f"operation {told['operation']}: {told['text']}" if earlier else told["text"])
+    return found
+
+
 def read_history(path: str) -> Dict[str, Column]:
     """Columns of history.csv by name, in the order of the file."""
     return columns_of(path, read_text(path))
@@ -129,7 +155,7 @@ def read_notes(path: str) -> Dict[str, List[str]]:
     """From the listing: the steps that were cut, and its warnings, each once: it has those of the deck before and after the steps.
 
     What the table warned of that a part ended with is judged anew by that of the part which went on from it; of a part that ended as
-    a new mesh was due it stays.
+    a new mesh was due it stays. The end of the last operation repeats what those before were warned of, with their names.
     """
     notes: Dict[str, List[str]] = {"cutbacks": [], "warnings": []}
     closing: Optional[List[str]] = None     # warnings of a closing table that may be superseded
@@ -142,7 +168,9 @@ def read_notes(path: str) -> Dict[str, List[str]]:
             closing = None
         elif "WARNING" in line or line.lower().startswith("warning:"):
             (notes["warnings"] if closing is None else closing).append(line.strip())
-    notes["warnings"] = list(dict.fromkeys(notes["warnings"] + (closing or [])))
+    told = list(dict.fromkeys(notes["warnings"] + (closing or [])))
+    repeated = {OF_OPERATION.sub("WARNING: ", line) for line in told if OF_OPERATION.match(line)}
+    notes["warnings"] = [line for line in told if line not in repeated]
     return notes
 
 

@@ -51,16 +51,16 @@ class Quantity:
     exact: Optional[float] = field(default=None)
 
     def of(self, history) -> float:
-        """The value in a history (columns by name)."""
+        """The value in a history (columns by name); the end is that of the last operation that has the column."""
         if self.column not in history:
             raise ReportError(f"--quantity {self.text}: no such column; there are: {', '.join(history)}")
-        values = history[self.column].values
-        if not len(values):
+        values, known = history[self.column].values, history[self.column].known
+        if not len(known):
             return float("nan")
         if self.place in ("max", "min"):
-            return float(getattr(values, self.place)())
+            return float(getattr(known, self.place)())
         if self.place == "end":
-            return float(values[-1])
+            return float(known[-1])
         time = history["time"].values
         k = int(abs(time - self.time).argmin())
         if abs(time[k] - self.time) > 1e-9 * max(abs(self.time), abs(time[-1])):

@@ -18,7 +18,7 @@ from typing import Dict, List, Sequence, Tuple
 from lagamine_report.errors import EXIT_MACHINE, ReportError
 from lagamine_report.program import write
 from lagamine_report.reader import Run
-from lagamine_report.tables import number, read_object, read_summary
+from lagamine_report.tables import number, read_object, read_summary, warnings_of
 
 from .ladders import Quantity, Rung
 
@@ -41,15 +41,12 @@ class Result:
     iterations: float
     elements: float
     equations: float
+    warnings: List[str]
 
 
 def program_of(deck: str) -> str:
-    """`lagacycle` for a deck that asks for new meshes, `lagamine` for others."""
-    try:
-        with open(deck, encoding="utf-8", errors="replace") as file:
-            return "lagacycle" if re.search(r"(?m)^REMSH\b", file.read()) else "lagamine"
-    except OSError as error:
-        raise ReportError(f"{deck}: cannot be read: {error.strerror}") from error
+    """`lagacycle` for a deck that asks for new meshes, in itself or in a file that it includes, `lagamine` for others."""
+    return "lagacycle" if any(re.search(rb"(?m)^(\xef\xbb\xbf)?REMSH\b", content) for content in files_of(deck).values()) else "lagamine"
 
 
 def command_of(deck: str, rung: Rung, fixed: Sequence[str], programs: str, threads: int) -> List[str]:
@@ -60,27 +57,33 @@ def command_of(deck: str, rung: Rung, fixed: Sequence[str], programs: str, threa
             *(part for word in words for part in ("-p", word))]
 
 
-def digest_of(deck: str) -> str:
-    """SHA-256 of a deck and the files it includes, those of steels among them (which name steels, and no files)."""
-    digest, waiting, seen = hashlib.sha256(), [os.path.abspath(deck)], set()
-    steels = set()
+def files_of(deck: str) -> Dict[str, bytes]:
+    """The deck and the files it includes, those of steels among them (which name steels, and no files), each with its content."""
+    found: Dict[str, bytes] = {}
+    waiting, steels = [os.path.abspath(deck)], set()
     while waiting:
         path = waiting.pop()
-        if path in seen:
+        if path in found:
             continue
-        seen.add(path)
         try:
             with open(path, "rb") as file:
-                content = file.read()
+                found[path] = file.read()
         except OSError as error:
             raise ReportError(f"{path}: cannot be read: {error.strerror}") from error
-        digest.update(content)
         if path in steels:
             continue
-        for word, a, b in re.findall(rb"(?im)^[ \t]*(INCLU|STEEL)[ \t]+(?:'([^']*)'|(\S+))", content):
+        for word, a, b in re.findall(rb"(?im)^[ \t]*(INCLU|STEEL)[ \t]+(?:'([^']*)'|(\S+))", found[path]):
             waiting.append(os.path.join(os.path.dirname(path), os.fsdecode(a or b)))
             if word.upper() == b"STEEL":
                 steels.add(waiting[-1])
+    return found
+
+
+def digest_of(deck: str) -> str:
+    """SHA-256 of a deck and the files it includes."""
+    digest = hashlib.sha256()
+    for content in files_of(deck).values():
+        digest.update(content)
     return digest.hexdigest()
 
 
@@ -114,12 +117,15 @@ def make_runs(commands: Dict[str, List[str]], marks: Dict[str, Dict[str, object]
                 shutil.rmtree(folder)
             os.makedirs(folder)
             write(os.path.join(folder, MARK), json.dumps(marks[folder], indent=1).encode("utf-8"))
-            code, said, spent = call(commands[folder], at_work)
+            try:
+                code, said, spent = call(commands[folder], at_work)
+            except OSError as error:
+                raise ReportError(f"{commands[folder][0]}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
             write(os.path.join(folder, SPENT), json.dumps({"processor_s": spent}).encode("utf-8"))
         except FileExistsError as error:
             raise ReportError(f"{folder}: is there, and no run of a study", advice="move it away, or choose another --out") from error
         except OSError as error:
-            raise ReportError(f"{commands[folder][0]}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
+            raise ReportError(f"{folder}: cannot be written: {error.strerror}", EXIT_MACHINE) from error
         if code not in (0, 3):
             raise ReportError(f"{shlex.join(commands[folder])}: {said.strip() or f'ended with {code}'}", code)
         tell(folder)
@@ -182,4 +188,4 @@ def read_result(rung: Rung, quantities: Sequence[Quantity]) -> Result:
     # runs of a scheduler have what their last program says
     seconds = number(read_object(spent).get("processor_s")) if os.path.isfile(spent) else number(s.get("cpu_s"))
     return Result(rung, code, s.get("stop_reason") or "", values, seconds, wall, number(s.get("steps")), number(s.get("iterations")),
-                  number(s.get("elements")), number(s.get("dofs")))
+                  number(s.get("elements")), number(s.get("dofs")), warnings_of(s))

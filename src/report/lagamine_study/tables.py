@@ -2,6 +2,7 @@
 import csv
 import io
 import math
+import re
 from typing import Dict, List, Sequence, Tuple
 
 from lagamine_report.picture import Picture
@@ -14,7 +15,7 @@ from .runs import Result
 
 Verdicts = Dict[Tuple[str, str], Verdict]      # by ladder and quantity
 HEADINGS = ["ladder", "run", "exit_code", "quantity", "value", "truth", "truth_from", "relative_error", "order", "processor_s", "wall_s", "steps", "iterations", "elements",
-            "equations"]
+            "equations", "warnings"]
 
 
 def rows(ladder: Ladder, results: Sequence[Result], quantities: Sequence[Quantity], verdicts: Verdicts) -> List[list]:
@@ -25,7 +26,8 @@ def rows(ladder: Ladder, results: Sequence[Result], quantities: Sequence[Quantit
         for k, result in enumerate(results):
             order = verdict.orders[k - 1] if k else float("nan")
             found.append([ladder.name, result.rung.title, result.code, quantity.text, result.values[quantity.text], verdict.truth, verdict.source,
-                          verdict.errors[k], order, result.seconds, result.wall, result.steps, result.iterations, result.elements, result.equations])
+                          verdict.errors[k], order, result.seconds, result.wall, result.steps, result.iterations, result.elements, result.equations,
+                          len(result.warnings)])
     return found
 
 
@@ -39,7 +41,7 @@ def as_csv(all_rows: Sequence[list]) -> bytes:
 
 
 def as_markdown(title: str, ladders: Sequence[Ladder], results: Dict[str, List[Result]], quantities: Sequence[Quantity], verdicts: Verdicts) -> bytes:
-    """Tables for people, a ladder and quantity each; runs that did not reach their end are named."""
+    """Tables for people, a ladder and quantity each; runs that did not reach their end are named, and what speaks against others."""
     lines = [f"# {title}", ""]
     for ladder in ladders:
         held = results[ladder.name]
@@ -53,7 +55,21 @@ def as_markdown(title: str, ladders: Sequence[Ladder], results: Dict[str, List[R
                              f"{_cell(result.seconds, 3)} | {_cell(result.steps)} | {_cell(result.iterations)} | {_cell(result.elements)} |")
             lines.append("")
         lines += [f"{result.rung.title} did not reach its end: {result.reason}" for result in held if result.code]
+        lines += warning_lines(held)
     return ("\n".join(lines).rstrip() + "\n").encode("utf-8")
+
+
+def warning_lines(results: Sequence[Result]) -> List[str]:
+    """What speaks against the runs of a ladder: each warning once, with the numbers of the last run that has it, and the runs."""
+    texts: Dict[str, str] = {}
+    runs: Dict[str, List[str]] = {}
+    for result in results:
+        for text in result.warnings:
+            same = re.sub(r"[-+.0-9]", "", text)
+            texts[same] = text
+            if result.rung.title not in runs.setdefault(same, []):
+                runs[same].append(result.rung.title)
+    return [f"WARNING ({', '.join(runs[same])}): {text}" for same, text in texts.items()]
 
 
 def _heading(verdict: Verdict) -> str:
