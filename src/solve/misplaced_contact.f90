@@ -11,7 +11,7 @@
 !> Errors of places come to be while a point is open or slides, and are carried on without contact (path_stress). Those of points
 !> that have come to bear since are pressed back first: by the forces that contact makes of a small share of them.
 !> Pressures stay those of the step: of what errors of places would change of them the motion balances most. A point that closes
-!> bears nothing yet.
+!> bears nothing yet. Where forces move a die errors of gaps are not known, and nothing is added.
 module misplaced_contact
   use contact_conductance, only: conductance_count, conductance_of_solution, hand_over
   use contact_lag, only: add_rates
@@ -59,7 +59,7 @@ contains
     logical :: done
 
     if (.not. (outcome%converged .and. outcome%heat%estimated .and. scene%follows_path)) return
-    if (conductance_count(equations%drivers) == 0) return
+    if (conductance_count(equations%drivers) == 0 .or. free_beside_nodes(scene, equations)) return
     allocate (errors(equations%dofs%ndof))
     if (allocated(outcome%path%error)) then
       errors = of_unknowns(equations, outcome%path%error)
@@ -98,6 +98,39 @@ contains
     equations%now = solve
     call equations%timers%stop(timer)
   end subroutine add_misplaced
+
+  !> Forces move dies, or a section is free: errors of their places are not carried, so that those of gaps are not known.
+  pure function free_beside_nodes(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes
+    integer :: f, k, c
+
+    yes = .false.
+    do f = 1, size(scene%fields)
+      if (f == displacement_field .or. scene%fields(f)%quantity /= 'motion') cycle
+      associate (number => equations%dofs%fields(f)%number)
+        do k = 1, size(number, 2)
+          do c = 1, size(number, 1)
+            if (number(c, k) > 0) yes = yes .or. is_free(equations, number(c, k))
+          end do
+        end do
+      end associate
+    end do
+  end function free_beside_nodes
+
+  !> An unknown is solved for.
+  pure function is_free(equations, unknown) result(yes)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: unknown   !! among those of all fields
+    logical :: yes
+    integer :: s
+
+    yes = .false.
+    do s = 1, size(equations%solves)
+      yes = yes .or. equations%solves(s)%equation(unknown) > 0
+    end do
+  end function is_free
 
   !> Errors of places with what the forces of contact make of them, by the factors of the step.
   subroutine press_back(scene, equations, solution, dt, errors, outcome)
