@@ -12,6 +12,7 @@ module heat_check
   use heat_contact_point, only: touching_still
   use isolated_bodies, only: judge_isolated
   use kinds, only: wp
+  use kinetics_check, only: judge_kinetics
   use law_api, only: find_parameter, heat_law, law_t
   use loads, only: by_convection, by_radiation, multiplier_at
   use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
@@ -56,6 +57,7 @@ contains
     call judge_zeros(scene, laws, warnings)
     call judge_units(scene, laws, warnings)
     if (.not. lacks_mesh(scene)) call judge_isolated(scene, laws, warnings)
+    call judge_kinetics(scene, warnings)
     call judge_hardness(scene, warnings)
     call judge_cycle_heat(scene, laws, warnings)
     if (scene%fields(displacement_field)%declared) return

@@ -27,7 +27,7 @@ module contact_lag
   use step_outcome, only: outcome_t
   implicit none
   private
-  public :: lag_t, add_lag, lags, measure_lag
+  public :: lag_t, add_lag, add_rates, lags, measure_lag
 
   type :: lag_t
     !> Sum of what passes more or less at the sides by the conductances reached, over that of what passes.
@@ -121,22 +121,44 @@ contains
     type(lag_t), intent(in) :: lag
     type(outcome_t), intent(inout) :: outcome
     type(evaluation_t) :: kept
-    type(state_error_t) :: none(size(scene%groups)), found(size(scene%groups))
-    real(wp), dimension(equations%dofs%ndof) :: heat, temperatures, content, all
-    type(report_t) :: report
-    real(wp) :: length, error, unused
-    logical :: at_hand
-    integer :: now, f, d, g
+    real(wp) :: error
+    integer :: now
 
     if (.not. (outcome%heat%estimated .and. lag%share > 0)) return
     now = equations%now
     equations%now = solve_of_heat(scene, equations)
     call keep_evaluation(equations, kept)
+    call add_rates(scene, equations, solution, dt, lag%rates, outcome, lag%flows, error)
+    call return_to(kept, equations)
+    equations%now = now
+    if (.not. outcome%converged) return
+    outcome%heat%error = outcome%heat%error + error
+    call judge(scene, solution, dt, outcome)
+  end subroutine add_lag
+
+  !> Errors of all steps so far with those of flows in this one, by the matrix of the temperatures, which the present solve finds.
+  subroutine add_rates(scene, equations, solution, dt, rates, outcome, after, error)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations   !! forces and element forces become others
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt         !! [time]
+    real(wp), intent(in) :: rates(:)   !! (ndof) what flows out of the nodes too much [power]
+    type(outcome_t), intent(inout) :: outcome
+    real(wp), intent(in), optional :: after(:)   !! (ndof) flows at the end of the step, found here where absent [power]
+    real(wp), intent(out), optional :: error     !! as that of heat_step_t [temperature]
+    type(state_error_t) :: none(size(scene%groups)), found(size(scene%groups))
+    real(wp), dimension(equations%dofs%ndof) :: heat, temperatures, content, all, now
+    type(report_t) :: report
+    real(wp) :: length, mean_over, of_heat, of_temperature
+    logical :: at_hand
+    integer :: f, d, g
+
     f = find_field(scene%fields, 'temperature')
     d = find_field(scene%fields, 'die_temperature')
     associate (two_stages => in_two_stages(scene, solution, outcome))
       length = merge(diagonal, 1.0_wp, two_stages)*dt
-      heat = merge(dt*lag%rates, 0.0_wp, equations%solves(equations%now)%equation > 0)
+      mean_over = merge(0.0_wp, dt, two_stages)
+      heat = merge(dt*rates, 0.0_wp, equations%solves(equations%now)%equation > 0)
       at_hand = equations%solves(equations%now)%analysed
       ! other pairs of bodies as the motion was found: the matrix has another pattern, and no factors yet
       if (.not. at_hand) then
@@ -151,29 +173,30 @@ contains
           solution%groups(g)%trial = found(g)%value
         end do
       end if
-      call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=at_hand)
-      if (.not. allocated(outcome%error)) then
-        heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, lag%flows, temperatures, &
-                                      merge(0.0_wp, dt, two_stages), none)
-        where (equations%solves(equations%now)%equation == 0) heat = 0
-        content = 0
-        all = 0
-        call take(equations, f, outcome%heat%content_error, content)
-        call take(equations, d, outcome%heat%die_error, content)
-        call take(equations, f, outcome%heat%temperature_error, all)
-        call leave(equations, f, content + heat, outcome%heat%content_error)
-        call leave(equations, d, content + heat, outcome%heat%die_error)
-        call leave(equations, f, all + temperatures, outcome%heat%temperature_error)
-        call measure_error(scene, equations, solution, outcome%du, temperatures, error, unused)
-        outcome%heat%error = outcome%heat%error + error
-        call measure_error(scene, equations, solution, outcome%du, all + temperatures, unused, outcome%heat%error_now)
-      else
-        outcome%converged = .false.
-      end if
     end associate
-    call return_to(kept, equations)
-    equations%now = now
-    if (outcome%converged) call judge(scene, solution, dt, outcome)
-  end subroutine add_lag
+    call solve_correction(equations, heat/length, temperatures, outcome%error, at_hand=at_hand)
+    if (allocated(outcome%error)) then
+      outcome%converged = .false.
+      return
+    end if
+    if (present(after)) then
+      now = after
+    else
+      call flows(scene, equations, solution, dt, outcome%du, now, mean_over=mean_over)
+    end if
+    heat = heat - length*flows_of(scene, equations, solution, dt, outcome%du, now, temperatures, mean_over, none)
+    where (equations%solves(equations%now)%equation == 0) heat = 0
+    content = 0
+    all = 0
+    call take(equations, f, outcome%heat%content_error, content)
+    call take(equations, d, outcome%heat%die_error, content)
+    call take(equations, f, outcome%heat%temperature_error, all)
+    call leave(equations, f, content + heat, outcome%heat%content_error)
+    call leave(equations, d, content + heat, outcome%heat%die_error)
+    call leave(equations, f, all + temperatures, outcome%heat%temperature_error)
+    call measure_error(scene, equations, solution, outcome%du, temperatures, of_heat, of_temperature)
+    if (present(error)) error = of_heat
+    call measure_error(scene, equations, solution, outcome%du, all + temperatures, of_heat, outcome%heat%error_now)
+  end subroutine add_rates
 
 end module contact_lag

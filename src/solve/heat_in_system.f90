@@ -18,7 +18,13 @@ module heat_in_system
   use torch_error, only: add_torches, in_sum
   implicit none
   private
-  public :: estimate_heat_in_system
+  public :: acting_t, ask_for_all, ask_for_heat, estimate_heat_in_system
+
+  !> What acts in a solve.
+  type :: acting_t
+    logical, allocatable :: active(:)   !! (ngroup)
+    logical, allocatable :: is_own(:)   !! (ndof)
+  end type acting_t
 
 contains
 
@@ -34,19 +40,15 @@ contains
     type(evaluation_t) :: kept
     type(path_piece_t) :: whole
     type(group_state_t), allocatable :: states(:)
-    logical, allocatable :: active(:), is_own(:)
+    type(acting_t) :: asked
     real(wp), dimension(equations%dofs%ndof) :: rest, before, after, rates, erred, mean
-    integer :: s, g
+    integer :: g
 
     if (.not. (outcome%converged .and. solves_heat(scene, equations))) return
     if (scene%strategy%scheme == scheme_tr_bdf2 .or. scene%strategy%theta < 1) return
     call keep_evaluation(equations, kept)
-    s = equations%now
-    active = equations%solves(s)%active
-    is_own = equations%solves(s)%is_own
     states = solution%groups
-    equations%solves(s)%is_own = of_heat(scene, equations)
-    equations%solves(s)%active = active .and. acts_on_heat(scene, equations)
+    call ask_for_heat(scene, equations, asked)
     rest = 0
     erred = 0
     mean = 0
@@ -59,14 +61,36 @@ contains
     call add_middle(scene, equations, solution, dt, outcome%du, before + after, rates, erred, mean)
     call estimate_error(scene, equations, solution, dt, rates, in_sum(erred, mean), after, .false., whole, outcome, &
                         at_hand=outcome%iterations > 0)
-    equations%solves(s)%active = active
-    equations%solves(s)%is_own = is_own
+    call ask_for_all(asked, equations)
     do g = 1, size(states)
       if (allocated(states(g)%trial)) solution%groups(g)%trial = states(g)%trial
     end do
     call return_to(kept, equations)
     if (outcome%converged) call judge(scene, solution, dt, outcome)
   end subroutine estimate_heat_in_system
+
+  !> From now on the present solve evaluates heat alone.
+  subroutine ask_for_heat(scene, equations, asked)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(acting_t), intent(out) :: asked   !! what acts in it
+
+    associate (solve => equations%solves(equations%now))
+      asked%active = solve%active
+      asked%is_own = solve%is_own
+      solve%active = solve%active .and. acts_on_heat(scene, equations)
+      solve%is_own = of_heat(scene, equations)
+    end associate
+  end subroutine ask_for_heat
+
+  !> All of it again.
+  pure subroutine ask_for_all(asked, equations)
+    type(acting_t), intent(in) :: asked
+    type(equations_t), intent(inout) :: equations
+
+    equations%solves(equations%now)%active = asked%active
+    equations%solves(equations%now)%is_own = asked%is_own
+  end subroutine ask_for_all
 
   !> Fields that heat acts on (nfield).
   pure function is_warm(scene) result(yes)

@@ -14,6 +14,7 @@ module step_solves
   use heat_stages, only: is_heat_alone, solve_heat
   use kinds, only: wp
   use known_motion, only: proportion
+  use misplaced_contact, only: add_misplaced
   use own_crossings, only: find_own_crossing, own_crossing_t
   use path_bounds, only: judge_path
   use scene, only: scene_t
@@ -56,6 +57,7 @@ contains
     end if
     call judge_contours(scene, equations, solution, outcome)
     call judge_path(scene, equations, solution, dt, corrections_of_motion(equations) > solved, outcome)
+    call add_misplaced(scene, equations, solution, dt, outcome)
   end subroutine solve_fields
 
   !> A step in which a body has passed through itself is none.

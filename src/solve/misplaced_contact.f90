@@ -1,0 +1,243 @@
+!> Error of temperatures that comes of where contact stands: of the heat that passes by points that bear, or are open by so much,
+!> only because the places of nodes err (path_record).
+!>
+!> Where a side lies on a die with gaps that are no more than what its places err, those errors decide which of its points bear and
+!> which do not, and by that how much heat passes, however exact temperatures are in time. So contact is made once more at the end
+!> of the step, from places with their error and from places with the error the other way. With F(e) the flows out of the nodes by
+!> contact there, a better run has (F(-e) - F(e))/2 more heat per time. The errors are taken as a whole, for points open and close
+!> by them; both ways, as points are few and the mean of what they do is wanted. It is an error of the temperatures at the end of
+!> the step, carried on with the others (heat_error). No length of a step follows from it, for places err by all steps so far.
+!>
+!> Errors of places come to be while a point is open or slides, and are carried on without contact (path_stress). Those of points
+!> that have come to bear since are pressed back first: by the forces that contact makes of a small share of them.
+!> Pressures stay those of the step: of what errors of places would change of them the motion balances most. A point that closes
+!> bears nothing yet. Where forces move a die errors of gaps are not known, and nothing is added.
+module misplaced_contact
+  use contact_conductance, only: conductance_count, conductance_of_solution, hand_over
+  use contact_lag, only: add_rates
+  use corrections, only: solve_correction
+  use dofs, only: move_fields
+  use drivers, only: at_pressure, at_status
+  use elem_api, only: block_done, instant_t, report_t
+  use element_loop, only: gather_forces, run_elements
+  use equations, only: equations_t, take_turn
+  use fields, only: displacement_field, find_field
+  use heat_error, only: flows
+  use heat_in_system, only: acting_t, ask_for_all, ask_for_heat
+  use heat_stages, only: evaluation_t, in_two_stages, keep_evaluation, return_to
+  use kinds, only: wp
+  use law_api, only: contact_open
+  use path_states, only: of_unknowns, on_nodes
+  use scene, only: scene_t
+  use solution, only: group_state_t, solution_t
+  use step_instants, only: make_instant
+  use step_outcome, only: outcome_t
+  use timers, only: ledger_t
+  implicit none
+  private
+  public :: add_misplaced
+
+  !> Share of the errors along which forces of contact are taken as linear.
+  real(wp), parameter :: small = 1.0e-3_wp
+
+contains
+
+  !> After the path within a step has been judged: errors of its temperatures with those of its contact. Forces, element forces and
+  !> states stay those of the step. Nothing where one of both errors is not estimated, or no heat passes by contact that moves.
+  subroutine add_misplaced(scene, equations, solution, dt, outcome)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution   !! its trial state is that of the step
+    real(wp), intent(in) :: dt   !! [time]
+    type(outcome_t), intent(inout) :: outcome
+    type(evaluation_t) :: kept
+    type(acting_t) :: asked
+    type(group_state_t), allocatable :: states(:)
+    real(wp), allocatable :: errors(:), now(:), with(:), against(:)
+    real(wp) :: rates(equations%dofs%ndof)
+    integer :: solve, timer, g
+    logical :: done
+
+    if (.not. (outcome%converged .and. outcome%heat%estimated .and. scene%follows_path)) return
+    if (conductance_count(equations%drivers) == 0 .or. free_beside_nodes(scene, equations)) return
+    allocate (errors(equations%dofs%ndof))
+    if (allocated(outcome%path%error)) then
+      errors = of_unknowns(equations, outcome%path%error)
+    else
+      errors = of_unknowns(equations, solution%path%error)
+    end if
+    if (.not. any(abs(errors) > 0)) return
+    call equations%timers%add('contact heat error', timer)
+    call equations%timers%start(timer)
+    solve = equations%now
+    call keep_evaluation(equations, kept)
+    allocate (states, source=solution%groups)
+    call take_turn(equations, displacement_field)
+    if (outcome%path%estimated) call press_back(scene, equations, solution, dt, errors, outcome)
+    if (.not. allocated(outcome%error)) then
+      allocate (now(conductance_count(equations%drivers)))
+      allocate (with, against, mold=now)
+      call conductance_of_solution(scene, solution, equations%drivers, now)
+      call conductance_from(scene, equations, solution, dt, outcome%du, errors, with, done)
+      if (done) call conductance_from(scene, equations, solution, dt, outcome%du, -errors, against, done)
+      if (done .and. any(abs(with - against) > 0)) then
+        call take_turn(equations, find_field(scene%fields, 'temperature'))
+        call ask_for_heat(scene, equations, asked)
+        call flows_between(scene, equations, solution, dt, outcome, with, against, rates)
+        call hand_over(now, equations%drivers)
+        call add_rates(scene, equations, solution, dt, rates, outcome)
+        call hand_over(now(:0), equations%drivers)
+        call ask_for_all(asked, equations)
+      end if
+    end if
+    if (allocated(outcome%error)) outcome%converged = .false.
+    do g = 1, size(states)
+      if (allocated(states(g)%trial)) call move_alloc(states(g)%trial, solution%groups(g)%trial)
+    end do
+    call return_to(kept, equations)
+    equations%now = solve
+    call equations%timers%stop(timer)
+  end subroutine add_misplaced
+
+  !> Forces move dies, or a section is free: errors of their places are not carried, so that those of gaps are not known.
+  pure function free_beside_nodes(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes
+    integer :: f, k, c
+
+    yes = .false.
+    do f = 1, size(scene%fields)
+      if (f == displacement_field .or. scene%fields(f)%quantity /= 'motion') cycle
+      associate (number => equations%dofs%fields(f)%number)
+        do k = 1, size(number, 2)
+          do c = 1, size(number, 1)
+            if (number(c, k) > 0) yes = yes .or. is_free(equations, number(c, k))
+          end do
+        end do
+      end associate
+    end do
+  end function free_beside_nodes
+
+  !> An unknown is solved for.
+  pure function is_free(equations, unknown) result(yes)
+    type(equations_t), intent(in) :: equations
+    integer, intent(in) :: unknown   !! among those of all fields
+    logical :: yes
+    integer :: s
+
+    yes = .false.
+    do s = 1, size(equations%solves)
+      yes = yes .or. equations%solves(s)%equation(unknown) > 0
+    end do
+  end function is_free
+
+  !> Errors of places with what the forces of contact make of them, by the factors of the step.
+  subroutine press_back(scene, equations, solution, dt, errors, outcome)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt             !! [time]
+    real(wp), intent(inout) :: errors(:)   !! (ndof) [unknown]
+    type(outcome_t), intent(inout) :: outcome
+    type(solution_t) :: other
+    real(wp), dimension(size(errors)) :: force, beside, magnitude, answer
+    logical :: done
+
+    force = 0
+    beside = 0
+    call contact_from(scene, equations, solution, dt, outcome%du, 0*errors, other, done)
+    associate (solve => equations%solves(equations%now))
+      call gather_forces(solve%pattern, equations%buffers, solve%is_own, force, magnitude)
+      if (done) call contact_from(scene, equations, solution, dt, outcome%du, small*errors, other, done)
+      if (.not. done) return
+      call gather_forces(solve%pattern, equations%buffers, solve%is_own, beside, magnitude)
+    end associate
+    call solve_correction(equations, (force - beside)/small, answer, outcome%error, at_hand=.true.)
+    if (allocated(outcome%error)) return
+    answer = of_unknowns(equations, on_nodes(equations, answer))
+    errors = errors + answer
+    outcome%path%error = on_nodes(equations, errors)
+  end subroutine press_back
+
+  !> Contact at the end of a step that begins at places which are others by so much. Element forces are those of contact then.
+  subroutine contact_from(scene, equations, solution, dt, du, apart, other, done)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt                !! [time]
+    real(wp), intent(in) :: du(:), apart(:)   !! (ndof) motion of the step, and how much others places are [unknown]
+    type(solution_t), intent(out) :: other    !! with trial states of these groups of contact
+    logical, intent(out) :: done              !! false where contact cannot be found
+    type(instant_t) :: instant
+    type(report_t) :: report
+    type(ledger_t) :: within
+    real(wp) :: none(0, 0)
+    logical :: active(size(scene%groups))
+    integer :: g
+
+    active = .false.
+    do g = 1, size(active)
+      if (equations%drivers(g)%is_of_heat_contact) active(scene%groups(g)%host) = .true.
+    end do
+    other = solution
+    call move_fields(equations%dofs, apart, other%fields)
+    call make_instant(scene, equations, other, dt, du, .false., instant)
+    instant%pairs = other%pairs
+    equations%buffers%force = 0
+    call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, &
+                      equations%solves(equations%now)%pattern, instant, du, none, other, equations%drivers, equations%buffers, &
+                      within, report)
+    done = report%status == block_done
+  end subroutine contact_from
+
+  !> Conductances of that contact, by the pressures of the step.
+  subroutine conductance_from(scene, equations, solution, dt, du, apart, values, done)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(in) :: dt                !! [time]
+    real(wp), intent(in) :: du(:), apart(:)   !! (ndof) as those of contact_from [unknown]
+    real(wp), intent(out) :: values(:)        !! (conductance_count) [power/area/temperature], [-]
+    logical, intent(out) :: done
+    type(solution_t) :: other
+    integer :: g
+
+    call contact_from(scene, equations, solution, dt, du, apart, other, done)
+    do g = 1, size(scene%groups)
+      if (.not. equations%drivers(g)%is_of_heat_contact) cycle
+      associate (host => scene%groups(g)%host, source => equations%drivers(g)%source)
+        associate (status => source(at_status)%row(host), pressure => source(at_pressure)%row(host), &
+                   now => solution%groups(host)%trial)
+          other%groups(host)%trial(pressure, :, :) = merge(0.0_wp, now(pressure, :, :), nint(now(status, :, :)) == contact_open)
+        end associate
+      end associate
+    end do
+    call conductance_of_solution(scene, other, equations%drivers, values)
+  end subroutine conductance_from
+
+  !> Half of what flows out of the nodes more by conductances `against` than by those `with` the errors.
+  subroutine flows_between(scene, equations, solution, dt, outcome, with, against, rates)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(inout) :: equations
+    type(solution_t), intent(inout) :: solution
+    real(wp), intent(in) :: dt                       !! [time]
+    type(outcome_t), intent(in) :: outcome
+    real(wp), intent(in) :: with(:), against(:)      !! (conductance_count) [power/area/temperature], [-]
+    real(wp), intent(out) :: rates(:)                !! (ndof) [power]
+    real(wp) :: by_error(size(rates)), length
+    logical :: active(size(scene%groups))
+
+    length = merge(0.0_wp, dt, in_two_stages(scene, solution, outcome))
+    active = equations%solves(equations%now)%active
+    ! what others pass is the same
+    equations%solves(equations%now)%active = active .and. equations%drivers%is_of_heat_contact
+    call hand_over(with, equations%drivers)
+    call flows(scene, equations, solution, dt, outcome%du, by_error, mean_over=length)
+    call hand_over(against, equations%drivers)
+    call flows(scene, equations, solution, dt, outcome%du, rates, mean_over=length)
+    rates = 0.5_wp*(rates - by_error)
+    equations%solves(equations%now)%active = active
+  end subroutine flows_between
+
+end module misplaced_contact
