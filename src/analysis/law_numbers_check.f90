@@ -10,6 +10,8 @@ module law_numbers_check
 
   !> Metals yield at less than this share of Young's modulus: the strongest steels and glassy metals at 0.01 to 0.02.
   real(wp), parameter :: largest_yield = 0.03_wp
+  !> And at more than this one: tin just below its melting point at 2e-5.
+  real(wp), parameter :: smallest_yield = 1.0e-5_wp
   !> Plastic strains of a table end below: tests of torsion, which go farthest, at 5.
   real(wp), parameter :: largest_strain = 10.0_wp
   !> Dry metals rub at less, hot ones that stick at their shear flow stress (M).
@@ -40,6 +42,8 @@ contains
       end block
       if (yield > largest_yield*young) call add(warnings, 'law '//material%name//': it yields at '//to_text(yield/young, 3) &
         //' of E, metals below '//to_text(largest_yield)//': are E and stresses in one unit?')
+      if (yield > 0 .and. yield < smallest_yield*young) call add(warnings, 'law '//material%name//': it yields at ' &
+        //to_text(yield/young, 3)//' of E, metals above '//to_text(smallest_yield)//': are E and stresses in one unit?')
     end associate
   end subroutine judge_yield
 

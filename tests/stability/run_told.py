@@ -51,6 +51,7 @@ END
 TABLE = "DIE    lower\n   SEGM  -5. -1.   30. -1.\nCNT2D  billet 1 lower -3 rough\n"
 # What is changed in the base, and what `--check` must say.
 WRONG = {
+    "yield in GPa": ({"   LINEAR 700. 300.\n": "   LINEAR 0.7 0.3\n"}, "it yields at 3.5e-6 of E"),
     "table in percent": ({"   LINEAR 700. 300.\n": "   TABLE 3\n   0. 700.\n   10. 750.\n   50. 900.\n"}, "goes to a plastic strain of 50"),
     "walked the other way": ({"30. 15.   -5. 15.": "-5. 15.   30. 15."}, "within the body of die upper"),
     "die in the part": ({"30. 15.   -5. 15.": "30. 14.   -5. 14."}, "begins 1 deep in die upper"),
