@@ -153,6 +153,7 @@ STOP   1.
 REMSH
 END
 """
+SMALLEST, LOOKS = 0.3, (0.7, 0.85)     # size of elements [length]; times of new meshes in `askew`
 HALF_NOTCH = """TITLE  half of a notch that closes
 STATE  PLSTN
 KINEM  LOG
@@ -251,10 +252,28 @@ def closing(checks):
     checks.that(abs(force/alone - 1) < 0.005, "a notch that closes: the force of its half", [force, alone])
 
 
+def askew(checks):
+    """A notch with flanks of unlike length: how deep the fold is when it has closed in part, and later, on elements of two sizes, with new meshes at the
+    same instants. The run on the finer ones takes half a minute: it is the reference."""
+    depths = []
+    for name, smallest in (("coarse", SMALLEST), ("fine", SMALLEST / 2)):
+        sizes = f"REMSH\n   TIMES {' '.join(map(str, LOOKS))}\n   ERROR 0.05 0.4\n   ANGLE 15. 165.\n   LEAST 5\n   SIZE {smallest:g} {4 * smallest:g}\n"
+        text = NOTCH.replace("12. 8.    8. 10.", "12. 7.    8. 10.").replace("12. 0.    12. 8.", "12. 0.    12. 7.")
+        out = checks.path(f"askew.{name}.out")
+        result = cycle(write(checks.path(f"askew.{name}.lag"), text.replace("STOP   1.", f"STOP   {LOOKS[-1] + 0.01}").replace("REMSH\n", sizes)), out)
+        if not checks.that(result.returncode == DONE, f"a notch askew, {name}: the cycle ends with 0", result.stdout + result.stderr):
+            return
+        looked = {float(one["stop_time [time]"]): float(one["lap_depth [length]"]) for one in tries(out) if one["accepted"] == "y" and one["lap_depth [length]"]}
+        depths.append([looked[time] for time in LOOKS])
+    off = max(abs(here - there) for here, there in zip(*depths))
+    checks.that(off < SMALLEST, "a notch askew: depth of the fold within one element of that on elements of half the size", depths)
+
+
 def main():
     checks = Checks()
     pushed(checks)
     closing(checks)
+    askew(checks)
     for name, *more in DECKS:
         remeshed(checks, os.path.join(ROOT, "decks", name + ".lag"), *more)
     remeshed(checks, write(checks.path("decks", "spring.lag"), SPRING), [], {"force_y_upper": 0.001, "elastic_energy": 0.001})

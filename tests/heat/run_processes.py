@@ -122,8 +122,10 @@ def summary(run):
 
 
 def told_of(run):
-    """Warnings of a run but for that of its mesh: one element across a part is coarse for temperatures, which is not what these checks are of."""
-    return [line["text"] for line in summary(run)["warnings"] if not line["text"].startswith("the mesh is coarse for its temperatures: ")]
+    """Warnings of a run but for that of its mesh, one element across a part is coarse for temperatures, and those of checks of its steps: these checks are of
+    neither."""
+    return [line["text"] for line in summary(run)["warnings"]
+            if "check" not in line and not line["text"].startswith("the mesh is coarse for its temperatures: ")]
 
 
 def melting(checks):
