@@ -160,7 +160,8 @@ contains
     outcome%path%error = on_nodes(equations, errors)
   end subroutine press_back
 
-  !> Contact at the end of a step that begins at places which are others by so much. Element forces are those of contact then.
+  !> Contact at the end of a step that begins at places which are others by so much, with drivers as they were found last. Element
+  !> forces are those of contact then.
   subroutine contact_from(scene, equations, solution, dt, du, apart, other, done)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -173,7 +174,7 @@ contains
     type(report_t) :: report
     type(ledger_t) :: within
     real(wp) :: none(0, 0)
-    logical :: active(size(scene%groups))
+    logical, dimension(size(scene%groups)) :: active, vary
     integer :: g
 
     active = .false.
@@ -185,9 +186,12 @@ contains
     call make_instant(scene, equations, other, dt, du, .false., instant)
     instant%pairs = other%pairs
     equations%buffers%force = 0
+    vary = equations%drivers%vary
+    equations%drivers%vary = .false.
     call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, &
                       equations%solves(equations%now)%pattern, instant, du, none, other, equations%drivers, equations%buffers, &
                       within, report)
+    equations%drivers%vary = vary
     done = report%status == block_done
   end subroutine contact_from
 
