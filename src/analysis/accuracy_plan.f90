@@ -7,7 +7,7 @@ module accuracy_plan
   use json_writer, only: json_t
   use kinds, only: wp
   use pilot_differences, only: difference, sample_t
-  use text, only: add_text, join, string_t, to_text
+  use text, only: add_text, join, percent, string_t, to_text
   implicit none
   private
   public :: accuracy_plan_t, accuracy_t
@@ -283,12 +283,5 @@ contains
     end subroutine add_parts
 
   end subroutine add_accuracy
-
-  pure function percent(share) result(words)
-    real(wp), intent(in) :: share
-    character(len=:), allocatable :: words
-
-    words = to_text(100*share, 3)//' %'
-  end function percent
 
 end module accuracy_plan

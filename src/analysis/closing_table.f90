@@ -6,7 +6,7 @@ module closing_table
   use cost_file, only: remesher_task
   use json_writer, only: json_t
   use kinds, only: wp
-  use text, only: string_t, to_text
+  use text, only: percent, string_t, to_text
   implicit none
   private
   public :: add_closing, closing_lines
@@ -121,13 +121,6 @@ contains
 
     words = 'stress hidden by its error: no estimate above '//percent(largest_stress)
   end function hidden_stress
-
-  pure function percent(share) result(words)
-    real(wp), intent(in) :: share
-    character(len=:), allocatable :: words
-
-    words = to_text(100*share, 3)//' %'
-  end function percent
 
   pure function times(cost) result(words)
     real(wp), intent(in) :: cost

@@ -1,7 +1,6 @@
 !> Checks of a run that do not hold, in words: what is wrong, by how much, and what to do.
 module failed_checks
   use energy_balance, only: damped_share, damping_advice, energy_imbalance, imbalance_advice
-  use kinds, only: wp
   use path_advice, only: motion_advice, stress_advice
   use path_record, only: motion_error, stress_error
   use penetration_advice, only: advice_at_points, advice_between_points
@@ -9,7 +8,7 @@ module failed_checks
   use scene, only: operation_of, scene_t
   use solution, only: solution_t
   use spring_check, only: has_body_springs, spring_advice, spring_share
-  use text, only: to_text
+  use text, only: percent, to_text
   implicit none
   private
   public :: list_failed_checks
@@ -49,13 +48,5 @@ contains
     end subroutine add
 
   end subroutine list_failed_checks
-
-  !> A share in percent.
-  function percent(share) result(words)
-    real(wp), intent(in) :: share
-    character(len=:), allocatable :: words
-
-    words = to_text(100*share, 3)//' %'
-  end function percent
 
 end module failed_checks

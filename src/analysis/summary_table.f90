@@ -18,7 +18,7 @@ module summary_table
   use spring_check, only: has_body_springs, spring_force, spring_share
   use strategy, only: coupling_once
   use system, only: cpu_seconds, peak_memory_mb
-  use text, only: add_text, string_t, to_text
+  use text, only: add_text, percent, string_t, to_text
   use wall_reactions, only: list_wall_reactions
   implicit none
   private
@@ -150,14 +150,6 @@ contains
                     //' times the penalties of PENETR')
     if (len(sides_that_span(scene, solution)) > 0) call add_text(lines, '  '//sides_that_span(scene, solution))
   end subroutine add_contact
-
-  !> A share in percent.
-  function percent(share) result(words)
-    real(wp), intent(in) :: share
-    character(len=:), allocatable :: words
-
-    words = to_text(100*share, 3)//' %'
-  end function percent
 
   !> A depth, and its share of what is allowed where a law states that.
   function depth(scene, length, ratio) result(words)

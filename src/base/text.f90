@@ -4,7 +4,7 @@ module text
   use kinds, only: i8, wp
   implicit none
   private
-  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, padded, two_digits, add_text
+  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, padded, percent, two_digits, add_text
 
   !> A text of its own length, so that arrays of words need no padding.
   type :: string_t
@@ -80,6 +80,14 @@ contains
       s = s//'e'//integer_to_text(e)
     end if
   end function real_to_text
+
+  !> A share in percent, three digits of it: `1.25 %`.
+  pure function percent(share) result(s)
+    real(wp), intent(in) :: share
+    character(len=:), allocatable :: s
+
+    s = to_text(100*share, 3)//' %'
+  end function percent
 
   pure function upper_case(s) result(u)
     character(len=*), intent(in) :: s

@@ -9,11 +9,6 @@ usage: run_heat_contact.py [-v] [-k]
 - `round`: the same of a quarter of a tube on a round die, and of two tubes with sides of other lengths: curves that are drawn as one are
   closed, however they are cut; a die the wrong way round, one beside the sides and one too rough are told.
 - `gap`: steady, across a gap by convection, a film of gas and radiation: the root of the balance.
-- `opens`: two blocks part while heat passes, across a gap that opens, by a film of gas and radiation: the equation of their two temperatures by
-  Runge and Kutta; TR-BDF2 is of second order, with what contact conducts at its instants, and implicit Euler tells its error; with
-  temperatures found once, and first, what is told has the conductances that are a step behind.
-- `near`: a die comes near to a hot block, or touches it, and goes: conductance follows a steep table of the gap in each step; the error in
-  time that is told is 0.6 to 2 times that of the heat that came in, by all schemes and ways of coupling, in long first steps too.
 - `bore`: steady, across the wide gap between a tube and the bore around it by radiation: the area is that of the sides named.
 - `half`: two half spaces brought together (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids, sec. 2.7 and 2.15): without resistance
   T = (b1 T1 + b2 T2)/(b1 + b2), b = sqrt(k rho c), at all times; with h T + (T1 - T) exp(g^2 t) erfc(g sqrt(t)), g = h (b1 + b2)/(b1 b2).
@@ -32,11 +27,8 @@ usage: run_heat_contact.py [-v] [-k]
 - `tool`: a hot billet slides over the sides of a conducting tool in long steps, so that their pairs change within steps: all work becomes
   heat (temperatures found once, and first).
 - `layer`: a hot billet presses on a cold tool of few elements: new meshes make no heat of the steep temperatures at its face.
-- `edges`: a hot billet pressed by an elastic tool that conducts, and held: how far contact reaches is what the motion errs in long steps; the error
-  in time that is told is 0.5 to 3 times that in the mean square (without its contact a fifth and less), of all ways to find both fields.
 """
 import glob
-import json
 import math
 import os
 import re
@@ -158,133 +150,6 @@ def gap(checks):
                   + "END\n")
         if run.ok:
             checks.small(abs(run.history["low"][-1] - up), 1e-7*up, f"{run.name}: {up:.4f}")
-
-
-OPENS = """TITLE  Two blocks that part
-STATE  PLSTN
-KINEM  LOG
-BLOCK  a PL8LS 4 e
-   0. 0.   10. 0.   10. 5.   0. 5.
-   1 1.   1 1.
-BLOCK  b PL8LS 4 e
-   0. 5.   10. 5.   10. 10.   0. 10.
-   1 1.   1 1.
-LAW    e ELA
-   200000. 0.3
-LAW    k COUL2D
-   PENETR 1.E-3   PHI 0.
-LAW    m HEAT
-   30000. 4.5
-ADDEL  a PL8TM m
-ADDEL  b PL8TM m
-DIE    d SIDES a 3
-CNT2D  b 1 d k
-COU2DC b 1 d H 2. EPS 0.6 SIGMA 5.67E-11 ZERO 273.15 REACH 5.
-   GAP    0. 1.   0.1 0.5   0.5 0.1   2. 0.
-START  T 800. a
-START  T 20. b
-FIXED  a 1 XY
-FIXED  b 3 X
-LIC    w
-   0. 0.   6. 2.
-MOVE   b 3 Y w
-SOLVE  {solve}
-{theta}STRAT  0.01 1.E-6 {step} 20 3
-NORMS  FORCE 1.E-6
-STOP   6.
-PROBE  t NODE T 5. 0.
-END
-"""
-
-
-def opens(checks):
-    """The hotter block at the end, against the equation; the error that implicit Euler tells."""
-    def rate(time, hot, cold):
-        gap_now = time/3
-        share = np.interp(gap_now, (0, 0.1, 0.5, 2), (1, 0.5, 0.1, 0))
-        return (2*share*(hot - cold) + 0.6*5.67e-11*((hot + 273.15)**4 - (cold + 273.15)**4))/(4.5*5)
-    hot, cold, n = 800.0, 20.0, 2000
-    for k in range(n):   # what one loses the other gains: one equation by the classical rule
-        dt, first = 6/n, rate(6*k/n, hot, cold)
-        second = rate(6*(k + 0.5)/n, hot - 0.5*dt*first, cold + 0.5*dt*first)
-        third = rate(6*(k + 0.5)/n, hot - 0.5*dt*second, cold + 0.5*dt*second)
-        change = dt*(first + 2*second + 2*third + rate(6*(k + 1)/n, hot - dt*third, cold + dt*third))/6
-        hot, cold = hot - change, cold + change
-    errors = {}
-    for name, theta, step in (("Euler", "", 0.1), ("TR-BDF2", "THETA  TRBDF2\n", 0.2), ("TR-BDF2", "THETA  TRBDF2\n", 0.1)):
-        run = Run(checks, f"opens-{name}-{step:g}", OPENS.format(theta=theta, step=step, solve="CONVERGE"))
-        if not run.ok:
-            return
-        errors[name, step] = run.history["t"][-1] - hot
-        if name == "Euler":
-            with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
-                told = json.load(file)["accuracy"]["heat"]["end"]
-            checks.that(0.7 < told/abs(errors[name, step]) < 1.4, "opens: what implicit Euler tells", (told, errors[name, step]))
-    # conductances that are a step behind, which no scheme of the temperatures knows: 2 K by TR-BDF2 in steps of 0.1
-    for name, theta, step in (("Euler", "", 0.1), ("Euler", "", 0.4), ("TR-BDF2", "THETA  TRBDF2\n", 0.2), ("TR-BDF2", "THETA  TRBDF2\n", 0.1)):
-        run = Run(checks, f"opens-once-{name}-{step:g}", OPENS.format(theta=theta, step=step, solve="ONCE"))
-        if run.ok:
-            with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
-                told = json.load(file)["accuracy"]["heat"]["end"]
-            true = abs(run.history["t"][-1] - hot)
-            checks.that(0.7 < told/true < 1.4, f"{run.name}: what is told of conductances a step behind", (told, true))
-    ratio = errors["TR-BDF2", 0.2]/errors["TR-BDF2", 0.1]
-    checks.that(2.8 < ratio < 6 and abs(errors["TR-BDF2", 0.1]) < 0.15*abs(errors["Euler", 0.1]), "opens: second order", (ratio, errors))
-
-
-NEAR = """TITLE a die that comes and goes
-STATE PLSTN
-KINEM LOG
-BLOCK b PL8LS 9 s
-   0. 0. 10. 0. 10. 10. 0. 10.
-   2 1. 10 0.3
-LAW s ELATH
-   20000. 0.3 1.2E-5
-ADDEL b PL8TM heat BILINEAR
-LAW heat HEAT
-   30. 4.
-START T 800.
-FIXED b 1 Y
-FIXED b 4 X
-DIE upper PILOT 0. 10.3
-   SEGM 20. 10.3  -1. 10.3
-LAW c COUL2D
-   PENETR 1.E-3 PHI 0.1
-CNT2D b 3 upper c
-TDIE upper T 50.
-COU2DC b 3 upper H 5. HO 0.05 REACH 10.
-   PRESS 0. 0.6 20. 1.
-   GAP 0. 0.6 0.02 0.3 0.1 0.1 0.3 0.03 1. 0.01 2. 0.
-LIC go
-   0. 0. 1. -{way} 1.5 -{way} 5. 2.
-MOVE upper Y go
-SOLVE {coupling}
-THETA {scheme}
-STRAT {step} {step}/1000 {step} 4 3
-STOP 5.
-END
-"""
-
-
-def near(checks):
-    """Conductance of a point goes through its table with the motion."""
-    capacity = 4.0*100
-    for way in (0.28, 0.305):
-        name = f"near-{way:g}"
-        fine = Run(checks, f"{name}-fine", NEAR.format(way=way, coupling="CONVERGE", scheme="TRBDF2", step=0.01))
-        if not fine.ok:
-            continue
-        for coupling, scheme, step in (("ONCE", "1.", 1.0), ("ONCE", "1.", 0.25), ("CONVERGE", "1.", 1.0), ("MONOLITHIC", "1.", 0.5),
-                                       ("ONCE", "TRBDF2", 1.0), ("ONCE", "TRBDF2", 0.5), ("CONVERGE", "TRBDF2", 0.5),
-                                       ("ONCE", "TRBDF2 TOL 3.", 1.0), ("CONVERGE", "TRBDF2 TOL 1.", 1.0)):
-            what = f"{name}-{coupling}-{scheme}-{step:g}".replace(" ", "").replace(".", "")
-            run = Run(checks, what, NEAR.format(way=way, coupling=coupling, scheme=scheme, step=step))
-            if not run.ok:
-                continue
-            with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
-                told = json.load(file)["accuracy"]["heat"]["end"]
-            true = abs(run.history["heat_in"][-1] - fine.history["heat_in"][-1])/capacity
-            checks.that(0.6 < told/true < 2.0, f"{what}: error in time that is told, over that of the mean temperature", (told, true, told/true))
 
 
 def half_spaces(checks):
@@ -562,8 +427,7 @@ def shrinks(checks):
         checks.that(np.max(run.history["force_y_d"][last]) < -50, f"{run.name}: pressed in every step", run.history["force_y_d"][last])
     run = Run(checks, "shrinks-jumps-ONCE", SHRINKS.format(touch=1., solve="ONCE"))
     if run.ok:
-        with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
-            whole = json.load(file)
+        whole = summary(run.out)
         told = whole["accuracy"]["heat"]["largest"]
         checks.that(any("do not agree" in warning["text"] for warning in whole["warnings"]), f"{run.name}: among the warnings of the summary",
                     whole["warnings"])
@@ -729,78 +593,6 @@ def tool(checks):
     checks.small(abs((columns["heat_released"][-1] + due)/work - 1), 1e-8, "tool: heat of friction and of plastic work")
 
 
-# Gaps of a micrometre decide where the tool bears.
-EDGES = """TITLE edges of contact
-STATE AXISYM
-KINEM LOG
-BLOCK b PL8LS 4 m
-   0. 0. 10. 0. 10. 12. 0. 12.
-   8 1. 8 1.
-BLOCK d PL8LS 4 el
-   0. 12. 25. 12. 25. 32. 0. 32.
-   12 1. 8 2.
-LAW m EVP-NH
-   TEMP 500.
-   150000. 0.3
-   0. 260. 0.06 0.1
-   TEMP 1200.
-   80000. 0.3
-   0. 27. 0.18 0.1
-LAW el ELATH
-   210000. 0.3 1.2E-5
-ADDEL b PL8TM h BILINEAR
-ADDEL d PL8TM hd BILINEAR
-LAW h HEAT
-   28. 4.9
-   QUINNEY 0.9
-LAW hd HEAT
-   30. 4.5
-START T 1100. b
-START T 250. d
-FIXED b 1 Y
-FIXED b 4 X
-FIXED d 4 X
-LAW rub COUL2D
-   PENETR 1.E-3 PHI 0.3
-DIE tool SIDES d 1
-CNT2D b 3 2 tool rub
-COU2DC b 3 2 tool H 20. FRIC 1.
-MOVE d 3 Y press
-LIC press
-   0. 0. 0.4 -5. 1. -5.
-SOLVE {way}
-STRAT 0.001 1.E-7 {step} 6 3
-STOP 1.
-END
-"""
-
-
-def edges(checks):
-    """Edges of contact stand elsewhere in long steps, and with them temperatures err."""
-    fine = Run(checks, "edges-fine", EDGES.format(way="ONCE", step=0.01))
-    for way, step in (("ONCE", 0.1), ("ONCE", 0.04), ("MONOLITHIC", 0.1)):
-        run = Run(checks, f"edges-{way}-{step:g}".replace(".", ""), EDGES.format(way=way, step=step))
-        if not (fine.ok and run.ok):
-            continue
-        true, told = square_mean(run, fine), summary(run.out)["accuracy"]["heat"]["end"]
-        checks.that(0.5 < told/true < 3.0, f"{run.name}: error in time that is told, over that of the temperatures", (told, true, told/true))
-
-
-def square_mean(run, fine):
-    """Difference of the temperatures at the end, in the mean square over the volume as it began."""
-    places, nodes = run.mesh()
-    weight = np.zeros(len(places))
-    for corners in nodes[:, :4]:
-        (x, y), following = places[corners].T, places[np.roll(corners, -1)].T
-        weight[corners] += abs(x @ following[1] - y @ following[0])*x.mean()
-    last = []
-    for one in (run, fine):
-        with one.open() as file:
-            last.append(file[f"steps/{sorted(file['steps'])[-1]}/node/temperature"][()].ravel())
-    of_corners = weight > 0
-    return math.sqrt(np.average((last[0] - last[1])[of_corners]**2, weights=weight[of_corners]))
-
-
 def layer(checks):
     """What the billet loses the tool gains, over new meshes too: their volumes are 1 to 4, but for the elastic change."""
     deck, out = write(os.path.join(checks.folder, "layer.lag"), LAYER), os.path.join(checks.folder, "layer")
@@ -834,8 +626,6 @@ def main():
     round_faces(checks)
     gap(checks)
     bore(checks)
-    opens(checks)
-    near(checks)
     half_spaces(checks)
     shock(checks)
     slide(checks)
@@ -845,7 +635,6 @@ def main():
     billet(checks)
     tool(checks)
     layer(checks)
-    edges(checks)
     checks.end()
 
 
