@@ -102,7 +102,8 @@ contains
     end do
   end function lies_beside
 
-  !> The point or corner in contact in an interval that presses most.
+  !> The point or corner in contact in an interval that presses most; a control point only where it does so alone: its place is
+  !> then the middle node, which no pressure says.
   pure subroutine strongest_point(scene, solution, loop, interval, place, presses)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -111,10 +112,12 @@ contains
     type(side_point_t), intent(out) :: place
     logical, intent(out) :: presses   !! there is one
     real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: most
+    type(side_point_t) :: of_control
+    real(wp) :: most, most_of_control
     integer :: pressure, corner_pressure, corner_place, side, e, p
 
     most = 0
+    most_of_control = 0
     presses = .false.
     if (find_variable(scene%groups(interval%group)%variables, 'pressure') == 0) return
     associate (group => scene%groups(interval%group), state => solution%groups(interval%group)%committed)
@@ -132,7 +135,11 @@ contains
         e = findloc(group%connectivity(2, :), loop%sides(2, modulo(side - 1, size(loop%sides, 2)) + 1), 1)
         if (e == 0) cycle
         do p = 1, size(xi)
-          if (.not. is_control_point(group%rule, p)) call try(xi(p), weight(p)*state(pressure, p, e), most, place)
+          if (is_control_point(group%rule, p)) then
+            call try(xi(p), weight(p)*state(pressure, p, e), most_of_control, of_control)
+          else
+            call try(xi(p), weight(p)*state(pressure, p, e), most, place)
+          end if
           if (corner_place == 0) cycle
           if (group%pairs == 0 .and. .not. abs(state(corner_place, p, e)) < 1) cycle
           call try(place_within(state(corner_place, p, e)), corner_weight(xi, p, state(corner_place, p, e), group%pairs > 0) &
@@ -140,7 +147,8 @@ contains
         end do
       end do
     end associate
-    presses = most > 0
+    if (.not. most > 0) place = of_control
+    presses = most > 0 .or. most_of_control > 0
 
   contains
 

@@ -15,6 +15,7 @@ module contact_placement
   use loop_intervals, only: along, contact_interval_t, is_shared, sort_intervals
   use own_contact, only: faces_itself
   use point_contacts, only: find_points, lies_beside, point_contact_t
+  use quadrature, only: rule_control
   use scene, only: scene_t
   use side_tags, only: kept_corners, side_tags_t
   use solution, only: solution_t
@@ -26,6 +27,8 @@ module contact_placement
   !> Old sides that turn by less than a corner may form one on the die: corners are kept, and sides are steep, from this share of
   !> the turn on.
   real(wp), parameter :: kept_corner_share = 0.5_wp
+  !> Length beside an end of a side that its control point stands for [sides].
+  real(wp), parameter :: of_control_point = 0.5_wp
 
 contains
 
@@ -101,7 +104,7 @@ contains
     list = [intervals, pack(short, apart)]
     call sort_intervals(list)
     call extend_to_corners(scene, solution, loop, options%small_gap_length, list)
-    call part_by_length(options, list, intervals, short)
+    call part_by_length(scene, options, size(loop%sides, 2), list, intervals, short)
   end subroutine extend_intervals
 
   !> Join what narrow gaps part, points of contact too.
@@ -120,19 +123,32 @@ contains
     call sort_intervals(list)
     call close_gaps(scene, solution, loop, tags, x, options%narrow_gap, list, &
                     options%small_gap_width, options%small_gap_length)
-    call part_by_length(options, list, intervals, short)
+    call part_by_length(scene, options, size(loop%sides, 2), list, intervals, short)
   end subroutine join_over_gaps
 
-  !> Intervals, and those so short that they are contact at a point.
-  pure subroutine part_by_length(options, list, intervals, short)
+  !> Intervals, and those so short that they are contact at a point. A control point is in contact over what its side has there, at
+  !> its end (contact_contour), and stands for the half beside it: an interval shorter than that, with no other beside it, is no
+  !> width of the contact.
+  pure subroutine part_by_length(scene, options, nside, list, intervals, short)
+    type(scene_t), intent(in) :: scene
     type(contour_options_t), intent(in) :: options
+    integer, intent(in) :: nside   !! of the loop
     type(contact_interval_t), intent(in) :: list(:)
     type(contact_interval_t), allocatable, intent(inout) :: intervals(:), short(:)
 
-    associate (length => along(list%to) - along(list%from))
-      intervals = pack(list, length >= options%least_contact)
-      short = pack(list, length < options%least_contact)
-    end associate
+    logical :: long(size(list))
+    integer :: k, i
+
+    do k = 1, size(list)
+      associate (length => along(list(k)%to) - along(list(k)%from))
+        long(k) = length >= options%least_contact
+        if (.not. long(k) .or. length >= of_control_point) cycle
+        if (scene%groups(list(k)%group)%rule%family /= rule_control) cycle
+        long(k) = any([(i /= k .and. lies_beside(list(k), list(i), nside), i=1, size(list))])
+      end associate
+    end do
+    intervals = pack(list, long)
+    short = pack(list,.not. long)
   end subroutine part_by_length
 
   !> Groups with points in contact: their status is zero when open. Sides that face their own body keep their contour

@@ -3,10 +3,12 @@ module contact_carry
   use boundary_curves, only: boundary_curve_t, boundary_length, position_at_arc_length, position_t
   use contour_contacts, only: contact_t
   use corrected_contours, only: contour_t
-  use interval_points, only: interval_points_t, status_row
+  use fields, only: pilot_field
+  use interval_points, only: depth_row, interval_points_t, status_row
   use kinds, only: wp
   use new_interval_points, only: new_row, round_off
   use old_interval_points, only: old_row
+  use point_depths, only: depths_where_they_lie
   use scene, only: role_heat_contact, scene_t
   use solution, only: present_coordinates, solution_t
   use state_variables, only: component_names, find_variable, kind_contact => transfer_contact
@@ -34,8 +36,9 @@ contains
     type(interval_points_t) :: row_old, row_new, row_of_points
     integer, allocatable :: carried(:)
     logical, allocatable :: conserved(:)
+    real(wp), allocatable :: depths(:)
     logical :: in_tip(2)
-    integer :: c, k, g, h, i
+    integer :: c, k, g, h, i, depth
 
     allocate (rows(0))
     x = present_coordinates(old, from)
@@ -52,8 +55,13 @@ contains
           if (h /= g .and. .not. (old%groups(h)%role == role_heat_contact .and. old%groups(h)%host == g)) cycle
           if (h /= g) row_old = row_of_points
           call list_carried(old, h, carried, conserved)
-          call carry_interval(carried, conserved, in_tip, row_old, row_new, from%groups(h)%committed, status_row(old, h), &
-                              to%groups(h)%committed)
+          depth = 0
+          if (h == g) depth = depth_row(old, g)
+          depths = [real(wp) ::]
+          if (depth > 0) depths = depths_where_they_lie(old, g, x, from%fields(pilot_field)%value(:, old%groups(g)%die), depth, &
+                                                        row_old, from%groups(g)%committed)
+          call carry_interval(carried, conserved, findloc(carried, depth, 1), depths, in_tip, row_old, row_new, &
+                              from%groups(h)%committed, status_row(old, h), to%groups(h)%committed)
           if (h == g) call place_on_die(new, g, contours(c)%boundary, contours(c)%contacts(k), row_new, to%groups(g)%committed)
           call add_integrals(old, h, carried(pack([(i, i=1, size(carried))], conserved)), row_old, from%groups(h)%committed, &
                              row_new, to%groups(h)%committed, rows)
@@ -121,9 +129,11 @@ contains
     end do
   end subroutine list_carried
 
-  pure subroutine carry_interval(carried, conserved, in_tip, row_old, row_new, before, status, after)
+  pure subroutine carry_interval(carried, conserved, depth, depths, in_tip, row_old, row_new, before, status, after)
     integer, intent(in) :: carried(:)
     logical, intent(in) :: conserved(:)   !! the integral along the interval is kept
+    integer, intent(in) :: depth          !! which of those carried is the depth; 0: none
+    real(wp), intent(in) :: depths(:)     !! of the old points, where one is [length]
     logical, intent(in) :: in_tip(2)      !! the interval begins, ends in a corner of the die
     type(interval_points_t), intent(in) :: row_old, row_new
     real(wp), intent(in) :: before(:, :, :)
@@ -137,6 +147,7 @@ contains
     do p = 1, size(row_old%s)
       old(:, p) = before(carried + row_old%offset(p), row_old%point(p), row_old%element(p))
     end do
+    if (depth > 0) old(depth, :) = depths
     call share_forces(row_old, old)
     in_tips = 0
     do k = 1, 2

@@ -3,17 +3,15 @@
 !> What is an integral over sides, as a force is, is kept as such, whatever the lengths of old and new sides are; other variables
 !> are those of the old point that presses most.
 module point_carry
-  use closest_point, only: closest_point_t
   use contact_carry, only: add_integrals, list_carried
   use corrected_contours, only: contour_t
-  use curve_search, only: closest_on_pieces
-  use dies, only: die_t, in_pilot_axes, present_die
   use fields, only: pilot_field
-  use interval_points, only: interval_points_t, status_row, surface
+  use interval_points, only: depth_row, interval_points_t, status_row, surface
   use kinds, only: wp
   use old_interval_points, only: old_row
   use point_contacts, only: point_contact_t
-  use quadrature, only: line_rule
+  use point_depths, only: measure_depths
+  use quadrature, only: is_control_point, line_rule
   use scene, only: role_heat_contact, scene_t
   use shape_functions, only: line3
   use solution, only: present_coordinates, solution_t
@@ -61,9 +59,10 @@ contains
             most = strongest(from%groups(g)%committed, rows_of(old, g, ['pressure']), h == g, row_old)
             call carry_one(carried, conserved, [along_die, pack([status_row(old, h)], status_row(old, h) > 0)], most, row_old, &
                            row_new, from%groups(h)%committed, to%groups(h)%committed)
-            if (h == g .and. row_old%offset(most) > 0) &
-              call measure_depths(new, g, to%fields(pilot_field)%value(:, new%groups(g)%die), rows_of(new, g, ['penetration']), &
-                                  row_new, to%groups(g)%committed)
+            ! the contour is the part's own there
+            if (h == g .and. (row_old%offset(most) > 0 .or. is_control_point(old%groups(g)%rule, row_old%point(most)))) &
+              call measure_depths(new, g, new%mesh%coordinates, to%fields(pilot_field)%value(:, new%groups(g)%die), &
+                                  depth_row(new, g), row_new, to%groups(g)%committed)
             call add_integrals(old, h, carried(pack([(i, i=1, size(carried))], conserved)), row_old, from%groups(h)%committed, &
                                row_new, to%groups(h)%committed, rows)
           end do
@@ -138,33 +137,6 @@ contains
       end do
     end associate
   end subroutine carry_one
-
-  !> Depths of the points that take over from a corner of the die within a side: what it has is along a normal of its own, and a
-  !> part of that makes no pressure (corner_contact). The contour is the part's own there, and depths are what its new points have.
-  pure subroutine measure_depths(scene, g, pilot, depth, row, state)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: g
-    real(wp), intent(in) :: pilot(3)            !! of the die now [length, radian]
-    integer, intent(in) :: depth(:)             !! number of the component, where there is one
-    type(interval_points_t), intent(in) :: row  !! of the new mesh
-    real(wp), intent(inout) :: state(:, :, :)   !! (nstate, npoint, nside) [unit of each component]
-    type(die_t) :: die
-    type(closest_point_t) :: closest
-    real(wp), allocatable :: xi(:), weight(:)
-    real(wp) :: phi(3), dphi(3)
-    integer :: p
-
-    if (size(depth) == 0) return
-    call line_rule(scene%groups(g)%rule, xi, weight)
-    die = present_die(scene%dies(scene%groups(g)%die), scene%mesh%coordinates)
-    do p = 1, size(row%s)
-      call line3(xi(row%point(p)), phi, dphi)
-      associate (side => scene%mesh%coordinates(:, scene%groups(g)%connectivity(:, row%element(p))))
-        call closest_on_pieces(die, matmul(in_pilot_axes(side, pilot), phi), 1, size(die%pieces, 3), closest)
-      end associate
-      if (closest%piece > 0) state(depth(1), row%point(p), row%element(p)) = closest%d
-    end do
-  end subroutine measure_depths
 
   !> Points of contact of the new sides of a group in the node nearest to a point, or at the nearest place where they are in no
   !> node; of the whole sides around where it is on the axis and has no surface. None where the part around the point was cut off.
