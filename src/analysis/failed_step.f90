@@ -142,8 +142,9 @@ contains
   end subroutine damp
 
   !> A damped step goes further than its path can be followed, and is tried again shorter: with more damping. Where damping began
-  !> with this step, past a limit point of a die that goes on, those that had failed were longer than the one to come, which may have
-  !> an equilibrium near: that is tried without damping first, once. (A hot billet with a chilled skin, pressed in steps that are far too long, would buckle off its die.)
+  !> with this step, past a limit point of a die that goes on, those that had failed were longer than the one to come, which may
+  !> have an equilibrium near: that is tried without damping first, once. (A hot billet with a chilled skin, pressed in steps that
+  !> are far too long, would buckle off its die.)
   subroutine answer_long_path(solution, run)
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
