@@ -21,7 +21,7 @@ module failed_step
   use watch_mesh, only: answer_distress, mesh_is_due
   implicit none
   private
-  public :: answer_failure, note_damped_steps, refuse_mesh
+  public :: answer_failure, answer_long_path, note_damped_steps, refuse_mesh
 
   !> So many cutbacks in a row are not answered by damping; damped, a step of the least length is tried until there were so many.
   integer, parameter :: most_cutbacks_undamped = 2, most_cutbacks_damped = 12
@@ -134,10 +134,30 @@ contains
     call begin_damping(scene, run%equations, solution, dt, past_limit, die, withdraws, name)
     if (name == '') return
     run%damped_from = solution%step + 1
+    ! what a die that withdraws has held is let go, however short the step
+    if (withdraws) run%undamped_again = run%damped_from
     call list_note(run%listing, 'note: step '//to_text(solution%step + 1)//': '//name &
                    //trim(merge(' withdraws, and               ', ' moves past a limit point, and', withdraws))//' no ' &
                    //'equilibrium is near: what it held is let go suddenly; steps are damped until there is one')
   end subroutine damp
+
+  !> A damped step goes further than its path can be followed, and is tried again shorter: with more damping. Where damping began
+  !> with this step, past a limit point of a die that goes on, those that had failed were longer than the one to come, which may
+  !> have an equilibrium near: that is tried without damping first, once. (A hot billet with a chilled skin, pressed in steps that
+  !> are far too long, would buckle off its die.)
+  subroutine answer_long_path(solution, run)
+    type(solution_t), intent(inout) :: solution
+    type(run_t), intent(inout) :: run
+
+    if (solution%damping > 0 .and. run%damped_from == solution%step + 1 .and. .not. run%undamped_again == run%damped_from) then
+      solution%damping = 0
+      run%undamped_again = run%damped_from
+      run%damped_from = 0
+      call list_note(run%listing, 'note: step '//to_text(run%undamped_again)//', now shorter, is tried without damping first')
+    else
+      call strengthen_damping(solution)
+    end if
+  end subroutine answer_long_path
 
   !> A step was accepted, and damping has ended with it.
   subroutine note_damped_steps(solution, run)

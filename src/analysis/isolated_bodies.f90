@@ -4,10 +4,13 @@ module isolated_bodies
   use fields, only: field_t, find_field
   use heat_sources, only: work_heated
   use kinds, only: wp
-  use law_api, only: heat_law, law_t
-  use scene, only: host_of, scene_t
+  use law_api, only: find_parameter, heat_law, law_t
+  use materials, only: material_t
+  use phase_growth, only: forms
+  use scene, only: group_t, host_of, scene_t
   use solution, only: start_fields
   use state_variables, only: find_variable
+  use steels, only: first_diffusive, last_diffusive
   use text, only: add_text, string_t, to_text
   implicit none
   private
@@ -33,7 +36,7 @@ contains
       if (scene%groups(g)%material == 0) cycle
       of_heat(g) = laws(scene%materials(scene%groups(g)%material)%law_id)%kind == heat_law
     end do
-    call find_heated(scene, laws, of_heat, changes)
+    call find_heated(scene, laws, of_heat, fields(f)%value(1, :), changes)
     associate (t => fields(f)%value(1, :))
       again = .true.
       do while (again)
@@ -59,10 +62,11 @@ contains
   end subroutine judge_isolated
 
   !> Nodes that heat comes to by sides, sources, facing bodies, imposed temperatures, or by the body itself.
-  subroutine find_heated(scene, laws, of_heat, changes)
+  subroutine find_heated(scene, laws, of_heat, temperatures, changes)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
     logical, intent(in) :: of_heat(:)    !! (ngroup) groups that conduct
+    real(wp), intent(in) :: temperatures(:)   !! (nnode) at the start
     logical, intent(out) :: changes(:)   !! (nnode)
     logical :: warms
     integer :: f, g, k
@@ -90,11 +94,37 @@ contains
       logical :: yes
 
       associate (group => scene%groups(own), material => scene%materials(scene%groups(own)%material))
-        yes = allocated(material%steel) .or. find_variable(group%variables, work_heated) > 0
+        yes = find_variable(group%variables, work_heated) > 0
+        if (allocated(material%steel)) &
+          yes = yes .or. phases_may_form(group, laws(material%law_id), material, temperatures(pack(group%connectivity, .true.)))
         if (yes .or. .not. associated(laws(material%law_id)%swell)) return
         yes = abs(laws(material%law_id)%swell(material, 0.0_wp)) > 0 .or. abs(laws(material%law_id)%swell(material, 1.0_wp)) > 0
       end associate
     end function makes_heat
   end subroutine find_heated
+
+  !> A body of a steel changes its phases at temperatures that stay: not where it is austenite above Ms and all its curves.
+  pure function phases_may_form(group, law, material, temperatures) result(yes)
+    type(group_t), intent(in) :: group
+    type(law_t), intent(in) :: law
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: temperatures(:)   !! of its nodes
+    logical :: yes
+    real(wp) :: t
+    integer :: v, k, i
+
+    yes = .true.
+    v = find_variable(group%variables, 'austenite')
+    if (v == 0) return
+    if (group%variables(v)%initial < 1) return
+    do k = 1, size(temperatures)
+      t = temperatures(k) + material%values(find_parameter(law, 'ZERO'))
+      if (t < material%steel%ms) return
+      do i = first_diffusive, last_diffusive
+        if (forms(material%steel, i, t)) return
+      end do
+    end do
+    yes = .false.
+  end function phases_may_form
 
 end module isolated_bodies

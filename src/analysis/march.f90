@@ -2,9 +2,8 @@
 module march
   use accept_step, only: accept
   use acceptance, only: is_on_probation, note_step
-  use damping, only: strengthen_damping
   use errors, only: error_t
-  use failed_step, only: answer_failure, note_damped_steps, refuse_mesh
+  use failed_step, only: answer_failure, answer_long_path, note_damped_steps, refuse_mesh
   use heated_steels, only: note_missing_austenite
   use held_steels, only: note_held_steels
   use kinds, only: wp
@@ -76,7 +75,7 @@ contains
     call solve_fields(scene, run%equations, solution, dt, outcome)
     do while (outcome%event < 1)
       call note_attempt(outcome%path, dt, solution%path)
-      if (outcome%path%too_long) call strengthen_damping(solution)
+      if (outcome%path%too_long) call answer_long_path(solution, run)
       dt = max(min(outcome%event, largest_event)*dt, scene%strategy%least_step)
       call list_event(run%listing, solution, dt, outcome%event_reason)
       if (outcome%heat%too_long) solution%heat%shortened = solution%heat%shortened + 1

@@ -57,6 +57,8 @@ module run_record
     logical :: spurious_reported = .false.
     !> The first of the steps that are damped now; 0 where none is.
     integer :: damped_from = 0
+    !> Step that was tried without damping again as it was shortened, or is not to be; 0 for none.
+    integer :: undamped_again = 0
     !> A group of the body whose sides have met, where no card gives them contact, and why it is known; 0 where none have.
     integer :: folding = 0
     character(len=:), allocatable :: folds

@@ -85,8 +85,8 @@ contains
                 //trim(phase_names(phase))//' of the steel '''//steel%name//''' is '//to_text(value, 3)//' ' &
                 //trim(unit)//' at ' &
                 //to_text(temperature, 4)//' degC, in element '//to_text(element)//' of '//name, &
-                'its POLY does not reach to this temperature: give a TABLE, which is constant beyond its ends, or numbers ' &
-                //'that hold there')
+                'the POLY of '//trim(property_names(property))//' does not reach to this temperature: give a TABLE, which is ' &
+                //'constant beyond its ends, or numbers that hold there')
     end subroutine judge
 
   end subroutine refuse_spent_polynomials

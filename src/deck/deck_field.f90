@@ -5,7 +5,7 @@
 module deck_field
   use kinds, only: wp
   use diagnostics, only: diagnostics_t, location_t
-  use foreign_characters, only: foreign_words
+  use foreign_characters, only: foreign_words, is_letter, letter_length
   use text, only: upper_case
   implicit none
   private
@@ -148,10 +148,18 @@ contains
     else
       field%text = line(first:last)
     end if
-    do i = first, last
+    i = first - 1
+    do while (i < last)
+      i = i + 1
       code = ichar(line(i:i))
       if (code < 32 .or. code > 126) then
-        call record(i, foreign_words(line, i))
+        ! names of files and texts may have letters of any script, which numbers and names have not
+        if (field%quoted .and. letter_length(line, i) > 0) then
+          i = i + letter_length(line, i) - 1
+          cycle
+        end if
+        call record(i, foreign_words(line, i)//trim(merge(': the name of a file with it stands in quotes', &
+                                                          '                                             ', is_letter(line, i))))
         return
       end if
       if (i > first .and. .not. field%quoted .and. scan(line(i:i), quotes) == 1) then

@@ -99,8 +99,8 @@ contains
     if (len(whole) + len(part) == 0 .or. next_is(p, name_letters//'.')) then
       call take(p, name_letters//'.', part)
       hint = ''
-      ! more than one letter: a name of a steel, such as 42CrMo4, rather than a number
-      if (len(whole) > 0 .and. len(part) > 1 .and. scan(part, '.') == 0) &
+      ! more than one letter: a name of a steel or of a file, such as 42CrMo4 or 42crmo4.met, rather than a number
+      if (len(whole) > 0 .and. len(part) > 1 .and. .not. (scan(part, '.') == 1 .or. scan(part, '.') == len(part))) &
         hint = ' (a name that begins with a digit stands in quotes)'
       call stop_at(p, first, 'malformed number '''//p%s(first:p%at - 1)//''''//hint)
       return

@@ -1,10 +1,10 @@
-!> Characters that a deck cannot have outside of titles and comments, in words: what stands there, and what was meant.
+!> Characters that a deck cannot have outside of titles, quotes and comments, in words: what stands there, and what was meant.
 !> Editors and pages of the web put them in place of blanks, signs and quotes. Source: RFC 3629 (UTF-8).
 module foreign_characters
   use text, only: to_text
   implicit none
   private
-  public :: foreign_words
+  public :: foreign_words, is_letter, letter_length
 
 contains
 
@@ -35,6 +35,47 @@ contains
       words = words//': it looks like a sign of multiplication, write ''*'''
     end select
   end function foreign_words
+
+  !> A letter of a script of two or three bytes begins at this place.
+  pure function is_letter(line, at) result(yes)
+    character(len=*), intent(in) :: line
+    integer, intent(in) :: at
+    logical :: yes
+
+    select case (code_point(line, at))
+    case (int(z'00C0'):int(z'00D6'), int(z'00D8'):int(z'00F6'), int(z'00F8'):int(z'1FFF'), int(z'3040'):int(z'D7A3'))
+      yes = .true.
+    case default
+      yes = .false.
+    end select
+  end function is_letter
+
+  !> Bytes of the character of UTF-8 beyond ASCII that begins at this place, 0 where these bytes are none.
+  pure function letter_length(line, at) result(length)
+    character(len=*), intent(in) :: line
+    integer, intent(in) :: at
+    integer :: length
+    integer :: k
+
+    select case (ichar(line(at:at)))
+    case (194:223)
+      length = 2
+    case (224:239)
+      length = 3
+    case (240:244)
+      length = 4
+    case default
+      length = 0
+      return
+    end select
+    if (at + length - 1 > len(line)) length = 0
+    do k = at + 1, at + length - 1
+      ! bytes that go on with a character are 10xxxxxx
+      if (iand(ichar(line(k:k)), 192) == 128) cycle
+      length = 0
+      return
+    end do
+  end function letter_length
 
   !> Number of a character of two or three bytes of UTF-8; 0 where these bytes are none.
   pure function code_point(line, at) result(code)

@@ -116,29 +116,38 @@ contains
     end do
   end subroutine source_factors
 
-  !> Share of half the ellipse of a source that lies in its bodies, on the mesh as it is read.
+  !> Share of half the ellipse of a source that lies in its bodies, on the mesh as it is read. In an axisymmetric scene the bodies
+  !> go on beyond the axis as their mirror images: a torch on the axis is all within.
   pure function source_share(scene, source, time) result(share)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: source      !! place in the scene's list
     real(wp), intent(in) :: time       !! [time]
     real(wp) :: share
-    real(wp) :: area, volume
+    real(wp) :: area, volume, beyond
 
     call integrate(scene, source, scene%section, scene%mesh%coordinates, time, area, volume)
-    share = area/plane_integral(scene%sources(source))
+    beyond = 0
+    if (scene%plane_state == axisymmetric) call integrate(scene, source, scene%section, scene%mesh%coordinates, time, beyond, &
+                                                          volume, mirrored=.true.)
+    share = (area + beyond)/plane_integral(scene%sources(source))
   end function source_share
 
   !> Integrals of the shape of a source over the elements of its bodies.
-  pure subroutine integrate(scene, source, section, coordinates, time, area, volume)
+  pure subroutine integrate(scene, source, section, coordinates, time, area, volume, mirrored)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: source
     real(wp), intent(in) :: section(3), coordinates(:, :), time
     real(wp), intent(out) :: area, volume   !! [length^2], [length^3, per radian when axisymmetric]
+    logical, intent(in), optional :: mirrored   !! the elements stand on the other side of x = 0
+    !> Nodes in the order that turns a mirrored element the right way round.
+    integer, parameter :: turned(8) = [2, 1, 4, 3, 5, 8, 7, 6]
     type(quad8_rule_t) :: rule
     real(wp) :: x(2, 8), shape(npoint), dx(npoint), dv(npoint)
     integer :: g, e
-    logical :: valid
+    logical :: valid, beyond
 
+    beyond = .false.
+    if (present(mirrored)) beyond = mirrored
     area = 0
     volume = 0
     call quad8_rule(npoint, rule)
@@ -146,6 +155,10 @@ contains
       if (scene%groups(g)%source /= source) cycle
       do e = 1, size(scene%groups(g)%connectivity, 2)
         x = coordinates(:, scene%groups(g)%connectivity(:, e))
+        if (beyond) then
+          x = x(:, turned)
+          x(1, :) = -x(1, :)
+        end if
         if (.not. reaches(scene%sources(source), time, x)) cycle
         call sample(scene, source, rule, section, time, x, shape, dx, dv, valid)
         if (.not. valid) cycle

@@ -39,6 +39,8 @@ module misplaced_contact
 
   !> Share of the errors along which forces of contact are taken as linear.
   real(wp), parameter :: small = 1.0e-3_wp
+  !> An answer of which contact takes so large a share the other way goes too far.
+  real(wp), parameter :: too_far = 0.1_wp
 
 contains
 
@@ -132,7 +134,8 @@ contains
     end do
   end function is_free
 
-  !> Errors of places with what the forces of contact make of them, by the factors of the step.
+  !> Errors of places with what the forces of contact make of them, by the factors of the step. Where the answer goes too far for
+  !> contact it is shortened as a line search does.
   subroutine press_back(scene, equations, solution, dt, errors, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
@@ -141,11 +144,13 @@ contains
     real(wp), intent(inout) :: errors(:)   !! (ndof) [unknown]
     type(outcome_t), intent(inout) :: outcome
     type(solution_t) :: other
-    real(wp), dimension(size(errors)) :: force, beside, magnitude, answer
+    real(wp), dimension(size(errors)) :: force, beside, pressed, magnitude, answer
+    real(wp) :: gain, against
     logical :: done
 
     force = 0
     beside = 0
+    pressed = 0
     call contact_from(scene, equations, solution, dt, outcome%du, 0*errors, other, done)
     associate (solve => equations%solves(equations%now))
       call gather_forces(solve%pattern, equations%buffers, solve%is_own, force, magnitude)
@@ -156,6 +161,15 @@ contains
     call solve_correction(equations, (force - beside)/small, answer, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
     answer = of_unknowns(equations, on_nodes(equations, answer))
+    call contact_from(scene, equations, solution, dt, outcome%du, small*(errors + answer), other, done)
+    if (.not. done) return
+    associate (solve => equations%solves(equations%now))
+      call gather_forces(solve%pattern, equations%buffers, solve%is_own, pressed, magnitude)
+    end associate
+    gain = dot_product(force - beside, answer)
+    against = dot_product(force - pressed, answer)
+    ! by a matrix without the contact that presses, as of a body that only its drag resists
+    if (against < -too_far*gain) answer = gain/(gain - against)*answer
     errors = errors + answer
     outcome%path%error = on_nodes(equations, errors)
   end subroutine press_back

@@ -19,12 +19,12 @@ module resting_bodies
   use fields, only: displacement_field
   use kinds, only: wp
   use loose_bodies, only: mark_acted_on
-  use scene, only: is_solid, scene_t
+  use scene, only: axisymmetric, is_solid, scene_t
   use solution, only: present_coordinates, solution_t
   use volumes_of_unknowns, only: volumes_of_nodes
   implicit none
   private
-  public :: leave_at_rest, light, strengthen_drag, work_of_drag
+  public :: leave_at_rest, light, strengthen_drag, take_back_ride, work_of_drag
 
   !> Force that moves a body by its extent, over its modulus and section: above round-off of forces, below what strains it.
   real(wp), parameter :: drag = 1.0e-7_wp
@@ -77,6 +77,68 @@ contains
 
     equations%more_drag = merge(min(stronger*equations%more_drag, strongest), 1.0_wp, failed)
   end subroutine strengthen_drag
+
+  !> A motion that answers forces which balance each other does not carry a body on that only its drag resists: what it is carried
+  !> as a whole is taken back, its strain stays. Ways as a whole are those that no support bars: translations, and in the plane the
+  !> turn; where forces balance to round-off alone the drag makes any of them large.
+  subroutine take_back_ride(scene, equations, solution, motion)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(solution_t), intent(in) :: solution
+    real(wp), intent(inout) :: motion(:)   !! (ndof) [unknown]
+    real(wp) :: x(2, size(equations%loose)), way(size(motion))
+    logical :: barred(2)
+    integer :: b, c
+
+    if (size(equations%loose) == 0) return
+    if (.not. any(equations%drag > 0)) return
+    x = present_coordinates(scene, solution)
+    do b = 1, maxval(equations%loose)
+      do c = 1, 2
+        call find_way(c, way, barred(c))
+        if (.not. barred(c)) call take_back(way)
+      end do
+      if (any(barred) .or. scene%plane_state == axisymmetric) cycle
+      call find_way(0, way, barred(1))
+      call take_back(way)
+    end do
+
+  contains
+
+    !> The motion of the body as a whole along an axis, or by a turn (0) about its middle.
+    subroutine find_way(axis, way, barred)
+      integer, intent(in) :: axis
+      real(wp), intent(out) :: way(:)    !! (ndof)
+      logical, intent(out) :: barred     !! by a support
+      real(wp) :: middle(2)
+      integer :: k, c
+
+      way = 0
+      barred = .false.
+      middle = sum(x, 2, mask=spread(equations%loose == b, 1, 2))/max(count(equations%loose == b), 1)
+      associate (number => equations%dofs%fields(displacement_field)%number)
+        do k = 1, size(equations%loose)
+          if (equations%loose(k) /= b) cycle
+          do c = 1, 2
+            if (number(c, k) == 0 .or. axis == 3 - c) cycle
+            way(number(c, k)) = 1
+            if (axis == 0) way(number(c, k)) = merge(middle(2) - x(2, k), x(1, k) - middle(1), c == 1)
+            barred = barred .or. .not. equations%dofs%is_free(number(c, k))
+          end do
+        end do
+      end associate
+      if (axis == 1 .and. scene%plane_state == axisymmetric) barred = .true.
+    end subroutine find_way
+
+    !> The share of a way in the motion, weighed by the drag.
+    subroutine take_back(way)
+      real(wp), intent(in) :: way(:)   !! (ndof)
+      real(wp) :: weight
+
+      weight = sum(equations%drag*way**2)
+      if (weight > 0) motion = motion - sum(equations%drag*way*motion)/weight*way
+    end subroutine take_back
+  end subroutine take_back_ride
 
   !> Work that the drag took in a step [energy].
   pure function work_of_drag(equations, du) result(work)

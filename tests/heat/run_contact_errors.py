@@ -18,6 +18,7 @@ import sys
 sys.dont_write_bytecode = True
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path[:0] = [os.path.join(TESTS, folder) for folder in ("patch", "runs")]
+from hardening_steel import hardening_steel  # noqa: E402
 from patch_support import Checks, Run, np  # noqa: E402
 from support import summary  # noqa: E402
 
@@ -223,11 +224,83 @@ def square_mean(run, fine):
     return math.sqrt(np.average((last[0] - last[1])[of_corners]**2, weights=weight[of_corners]))
 
 
+LOST = """TITLE  A strip bent hot and held in dies that it shrinks away from
+STATE  PLSTN
+KINEM  LOG
+BLOCK  strip PL8LS 4 steel
+   0. 0.   40. 0.   40. 1.5   0. 1.5
+   24 1.   3 1.
+LAW    steel ARBTHMET
+   STEEL lost.met s
+   STRESS 1.
+ADDEL  strip PL8TM heat BILINEAR
+LAW    heat META
+   STEEL lost.met s
+   ENERGY 1.
+START  T 800.
+LAW    film COUL2D
+   PENETR 0.02 PHI 0.2
+DIE    low
+   SEGM   -1. -10.   12. -10.
+   FILLT  3. 1.E-3
+   SEGM   12. -10.   20. 0.
+   FILLT  3. 1.E-3
+   SEGM   20. 0.  50. 0.
+DIE    punch PILOT 0. 1.5
+   SEGM   16.7 11.5   8.7 1.5
+   FILLT  3. 1.E-3
+   SEGM   8.7 1.5  -1. 1.5
+CNT2D  strip 1 low film
+CNT2D  strip 3 punch film
+FIXED  strip 4 X
+TDIE   low T 60.
+TDIE   punch T 60.
+COU2DC strip 1 low H 3. HO 0.1 REACH 3. FRIC 0.9 SHARE 0.5
+   PRESS 0. 0.1 10. 1.
+   GAP 0. 0.1 0.3 0.02
+COU2DC strip 3 punch H 3. HO 0.1 REACH 3. FRIC 0.9 SHARE 0.5
+   PRESS 0. 0.1 10. 1.
+   GAP 0. 0.1 0.3 0.02
+LIC    down
+   0. 0. 1. -10.04 6. -10.04
+MOVE   punch Y down
+THETA  TRBDF2
+STRAT  0.0015 1.E-6 0.03 10 5
+STOP   6.
+PROBE  m MEAN martensite strip/PL8TM
+END
+"""
+
+
+def lost(checks):
+    """Errors of places of a body that hardly touches anything."""
+    with open(os.path.join(checks.folder, "lost.met"), "w", encoding="utf-8") as file:
+        file.write(hardening_steel("s", 1500, 6000))
+    run = Run(checks, "lost", LOST)
+    if not run.ok:
+        return
+    path = summary(run.out)["accuracy"]["path"]
+    checks.that(0 < path["motion_pct"] < 0.2, "lost: error of the motion by the path [%]", path)
+    checks.that(path.get("stress_known", True) and path["stress_pct"] < 3, "lost: error of the stress [%]", path)
+
+
+def skin(checks):
+    """chilled_die of the decks in steps of 0.2 s, against 0.05 s."""
+    with open(os.path.join(os.path.dirname(TESTS), "decks", "chilled_die", "chilled_die.lag"), encoding="utf-8") as file:
+        deck = file.read()
+    long, short = (Run(checks, f"skin-{step}".replace(".", ""), deck, options=("-p", f"step={step}")) for step in (0.2, 0.05))
+    if long.ok and short.ok:
+        checks.small(abs(long.history["face"][-1] - short.history["face"][-1]), 3.0, "skin: temperature of the middle of the face [K]")
+        checks.that("damped_share" not in summary(long.out)["checks"], "skin: no step is damped", summary(long.out)["checks"])
+
+
 def main():
     checks = Checks()
     opens(checks)
     near(checks)
     edges(checks)
+    lost(checks)
+    skin(checks)
     checks.end()
 
 

@@ -432,6 +432,13 @@ def told(checks):
         if run.ok:
             lines = [line["text"] for line in summary(run)["warnings"] if "keeps its temperature" in line["text"]]
             checks.that(len(lines) == isolated and all(line.startswith("hot: ") and " of 900:" in line for line in lines), f"{run.name}: told", lines)
+    # of a steel: austenite above all its curves keeps its temperature, other mixtures may release heat
+    for start, phases, isolated in ((900, "", True), (250, "", False), (900, "START PHASES PEARLITE 1.\n", False)):
+        run = Run(checks, f"isolated-{start}-{len(phases)}", "TITLE isolated\nSTATE PLSTN\nKINEM SMALL\nBLOCK hot PL8TM 4 s BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  f"   2 1.   2 1.\nLAW s META\n   STEEL soft.met s\n   ENERGY 1.\nSTART T {start}.\n{phases}STRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"] if "keeps its temperature" in line["text"]]
+            checks.that(len(lines) == isolated, f"{run.name}: told", lines)
     # 273.15 for -273.15
     for zero in (0., -273.15, 273.15, 20.):
         run = Run(checks, f"zero-{zero:g}", "TITLE zero\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"

@@ -265,6 +265,22 @@ def off(checks):
         checks.that("% of half its ellipse is found in its bodies" in listing, "off: warned before")
 
 
+def on_the_axis(checks):
+    """A spot on the axis of a round plate is all within it, one half a semi-axis inside its rim is not."""
+    found = {}
+    for place in (0.0, 0.018):
+        name = f"spot-{place:g}".replace(".", "")
+        run = Run(checks, name, HEAD.format(title="spot", state="AXISYM")
+                  + "BLOCK plate PL8TM 4 steel\n   0. -0.01 0.02 -0.01 0.02 0. 0. 0.\n   20 1. 10 1.\n" + LAW
+                  + f"GOLDAK plate P 10. ETA 1. FRONT 0.004 REAR 0.004 DEPTH 0.003 INTO 0. -1.\n   0. {place} 0.\n"
+                  + steps(0.05, 0.1) + "END\n")
+        if run.ok:
+            books(checks, run, 10.0*0.1, 1e-10, "heat of a spot")
+            with open(os.path.join(run.out, name + ".log"), encoding="utf-8") as file:
+                found[place] = "% of half its ellipse" in file.read()
+    checks.that(found == {0.0: False, 0.018: True}, "spot: warned of beside the rim alone", found)
+
+
 def long_steps(checks):
     """Steps end where a torch begins to be felt, crosses, and is gone: what is warned of is how far it goes in such a step; with
     a tolerance of their errors they are as short as it asks."""
@@ -355,6 +371,7 @@ def main():
     motion(checks)
     under(checks)
     off(checks)
+    on_the_axis(checks)
     long_steps(checks)
     whole(checks)
     told(checks)
