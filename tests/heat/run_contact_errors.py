@@ -10,6 +10,8 @@ usage: run_contact_errors.py [-v] [-k]
   time that is told is 0.6 to 2 times that of the heat that came in, by all schemes and ways of coupling, in long first steps too.
 - `edges`: a hot billet pressed by an elastic tool that conducts, and held: how far contact reaches is what the motion errs in long steps; the error
   in time that is told is 0.5 to 3 times that in the mean square (without its contact a fifth and less), of all ways to find both fields.
+- `lost`: a hot strip that shrinks away from the dies it was bent in: what only its drag resists is no error of its places.
+- `skin`: the chilled skin of a hot billet, pressed in steps that are far too long, stays on its die.
 """
 import math
 import os
