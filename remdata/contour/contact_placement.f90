@@ -135,7 +135,6 @@ contains
     integer, intent(in) :: nside   !! of the loop
     type(contact_interval_t), intent(in) :: list(:)
     type(contact_interval_t), allocatable, intent(inout) :: intervals(:), short(:)
-
     logical :: long(size(list))
     integer :: k, i
 

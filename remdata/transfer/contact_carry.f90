@@ -4,7 +4,7 @@ module contact_carry
   use contour_contacts, only: contact_t
   use corrected_contours, only: contour_t
   use fields, only: pilot_field
-  use interval_points, only: depth_row, interval_points_t, status_row
+  use interval_points, only: component_row, interval_points_t, status_row
   use kinds, only: wp
   use new_interval_points, only: new_row, round_off
   use old_interval_points, only: old_row
@@ -56,7 +56,7 @@ contains
           if (h /= g) row_old = row_of_points
           call list_carried(old, h, carried, conserved)
           depth = 0
-          if (h == g) depth = depth_row(old, g)
+          if (h == g) depth = component_row(old, g, 'penetration')
           depths = [real(wp) ::]
           if (depth > 0) depths = depths_where_they_lie(old, g, x, from%fields(pilot_field)%value(:, old%groups(g)%die), depth, &
                                                         row_old, from%groups(g)%committed)
@@ -85,10 +85,9 @@ contains
     type(position_t) :: position
     integer :: p, first, last, piece, xi
 
-    piece = find_variable(scene%groups(g)%variables, 'die_piece')
+    piece = component_row(scene, g, 'die_piece')
     if (piece == 0 .or. status_row(scene, g) == 0) return
-    piece = scene%groups(g)%variables(piece)%first
-    xi = scene%groups(g)%variables(find_variable(scene%groups(g)%variables, 'die_xi'))%first
+    xi = component_row(scene, g, 'die_xi')
     first = contact%first
     last = modulo(contact%next - 2, size(boundary%arcs)) + 1
     do p = 1, size(row%s)

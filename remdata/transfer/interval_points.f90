@@ -9,7 +9,7 @@ module interval_points
   use vectors, only: length_of
   implicit none
   private
-  public :: depth_row, interval_points_t, status_row, surface
+  public :: component_row, interval_points_t, status_row, surface
   public :: add_neighbour, line_jacobian, add_point
 
   !> Integration points of an interval in sequence: arc length from its start, length each represents, point and element.
@@ -31,19 +31,19 @@ contains
     integer, intent(in) :: g   !! group
     integer :: row
 
-    row = find_variable(scene%groups(g)%variables, 'contact_status')
-    if (row > 0) row = scene%groups(g)%variables(row)%first
+    row = component_row(scene, g, 'contact_status')
   end function status_row
 
-  !> Number of the component that is the depth of a group's points; 0 where there is none.
-  pure function depth_row(scene, g) result(row)
+  !> Number of the first component of a variable of a group; 0 where there is none.
+  pure function component_row(scene, g, name) result(row)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g   !! group
+    character(len=*), intent(in) :: name
     integer :: row
 
-    row = find_variable(scene%groups(g)%variables, 'penetration')
+    row = find_variable(scene%groups(g)%variables, name)
     if (row > 0) row = scene%groups(g)%variables(row)%first
-  end function depth_row
+  end function component_row
 
   !> The integration point of an adjacent side in the node where the interval begins or ends.
   pure subroutine add_neighbour(scene, g, loop, x, side, at, row)

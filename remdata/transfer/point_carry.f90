@@ -6,7 +6,7 @@ module point_carry
   use contact_carry, only: add_integrals, list_carried
   use corrected_contours, only: contour_t
   use fields, only: pilot_field
-  use interval_points, only: depth_row, interval_points_t, status_row, surface
+  use interval_points, only: component_row, interval_points_t, status_row, surface
   use kinds, only: wp
   use old_interval_points, only: old_row
   use point_contacts, only: point_contact_t
@@ -62,7 +62,7 @@ contains
             ! the contour is the part's own there
             if (h == g .and. (row_old%offset(most) > 0 .or. is_control_point(old%groups(g)%rule, row_old%point(most)))) &
               call measure_depths(new, g, new%mesh%coordinates, to%fields(pilot_field)%value(:, new%groups(g)%die), &
-                                  depth_row(new, g), row_new, to%groups(g)%committed)
+                                  component_row(new, g, 'penetration'), row_new, to%groups(g)%committed)
             call add_integrals(old, h, carried(pack([(i, i=1, size(carried))], conserved)), row_old, from%groups(h)%committed, &
                                row_new, to%groups(h)%committed, rows)
           end do
@@ -80,13 +80,10 @@ contains
     integer, intent(in) :: g
     character(len=*), intent(in) :: names(:)
     integer, allocatable :: rows(:)
-    integer :: k, v
+    integer :: k
 
-    allocate (rows(0))
-    do k = 1, size(names)
-      v = find_variable(scene%groups(g)%variables, trim(names(k)))
-      if (v > 0) rows = [rows, scene%groups(g)%variables(v)%first]
-    end do
+    rows = [(component_row(scene, g, trim(names(k))), k=1, size(names))]
+    rows = pack(rows, rows > 0)
   end function rows_of
 
   !> The point of a row with the largest force, as a number in the row.

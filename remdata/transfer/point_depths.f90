@@ -18,25 +18,22 @@ module point_depths
 
 contains
 
-  !> Depths of the points of a row; what the state has where the die is nowhere near.
+  !> Put the depths of all points of a row where their sides lie.
   pure subroutine measure_depths(scene, g, x, pilot, component, row, state)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: g
     real(wp), intent(in) :: x(:, :)             !! nodes now (2, nnode) [length]
     real(wp), intent(in) :: pilot(3)            !! of the die now [length and radian]
     integer, intent(in) :: component            !! that is the depth
-    type(interval_points_t), intent(in) :: row
+    type(interval_points_t), intent(in) :: row  !! of points alone, no corners of the die
     real(wp), intent(inout) :: state(:, :, :)   !! (nstate, npoint, nside) [unit of each component]
-    type(die_t) :: die
-    real(wp), allocatable :: xi(:), weight(:)
+    real(wp) :: depths(size(row%s))
     integer :: p
 
-    call line_rule(scene%groups(g)%rule, xi, weight)
-    die = present_die(scene%dies(scene%groups(g)%die), x)
-    do p = 1, size(row%s)
-      associate (depth => state(component, row%point(p), row%element(p)))
-        depth = depth_at(die, in_pilot_axes(x(:, scene%groups(g)%connectivity(:, row%element(p))), pilot), xi(row%point(p)), depth)
-      end associate
+    depths = depths_of_state(component, row, state)
+    call measure(scene, g, x, pilot, row, spread(.true., 1, size(depths)), depths)
+    do p = 1, size(depths)
+      state(component, row%point(p), row%element(p)) = depths(p)
     end do
   end subroutine measure_depths
 
@@ -51,40 +48,53 @@ contains
     type(interval_points_t), intent(in) :: row
     real(wp), intent(in) :: state(:, :, :)     !! (nstate, npoint, nside) [unit of each component]
     real(wp) :: depths(size(row%s))            !! [length]
+    logical, dimension(size(row%s)) :: control, leaves
+    integer :: p
+
+    depths = depths_of_state(component, row, state)
+    control = [(row%offset(p) == 0 .and. is_control_point(scene%groups(g)%rule, row%point(p)), p=1, size(depths))]
+    if (.not. any(control)) return
+    leaves = control .and. any(.not. control) .and. .not. (row%s > 0 .and. row%s < row%length)
+    call measure(scene, g, x, pilot, row, control .and. .not. leaves, depths)
+    do p = 1, size(depths)
+      if (leaves(p)) depths(p) = depths(minloc(abs(row%s - row%s(p)), 1, mask=.not. control))
+    end do
+  end function depths_where_they_lie
+
+  !> What the state has.
+  pure function depths_of_state(component, row, state) result(depths)
+    integer, intent(in) :: component
+    type(interval_points_t), intent(in) :: row
+    real(wp), intent(in) :: state(:, :, :)
+    real(wp) :: depths(size(row%s))   !! [length]
+    integer :: p
+
+    depths = [(state(component + row%offset(p), row%point(p), row%element(p)), p=1, size(depths))]
+  end function depths_of_state
+
+  !> Depths of some points of a row where their sides lie; others, and where the die is nowhere near, stay.
+  pure subroutine measure(scene, g, x, pilot, row, some, depths)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: g
+    real(wp), intent(in) :: x(:, :), pilot(3)
+    type(interval_points_t), intent(in) :: row
+    logical, intent(in) :: some(:)           !! (npoint)
+    real(wp), intent(inout) :: depths(:)     !! (npoint) [length]
     type(die_t) :: die
+    type(closest_point_t) :: closest
     real(wp), allocatable :: xi(:), weight(:)
-    logical :: control(size(row%s))
+    real(wp) :: side(2, 3), phi(3), dphi(3)
     integer :: p
 
     call line_rule(scene%groups(g)%rule, xi, weight)
     die = present_die(scene%dies(scene%groups(g)%die), x)
-    depths = [(state(component + row%offset(p), row%point(p), row%element(p)), p=1, size(depths))]
-    control = [(row%offset(p) == 0 .and. is_control_point(scene%groups(g)%rule, row%point(p)), p=1, size(depths))]
     do p = 1, size(depths)
-      if (.not. control(p)) cycle
-      if (any(.not. control) .and. .not. (row%s(p) > 0 .and. row%s(p) < row%length)) then
-        depths(p) = depths(minloc(abs(row%s - row%s(p)), 1, mask=.not. control))
-      else
-        depths(p) = depth_at(die, in_pilot_axes(x(:, scene%groups(g)%connectivity(:, row%element(p))), pilot), &
-                             xi(row%point(p)), depths(p))
-      end if
+      if (.not. some(p)) cycle
+      call line3(xi(row%point(p)), phi, dphi)
+      side = in_pilot_axes(x(:, scene%groups(g)%connectivity(:, row%element(p))), pilot)
+      call closest_on_pieces(die, matmul(side, phi), 1, size(die%pieces, 3), closest)
+      if (closest%piece > 0) depths(p) = closest%d
     end do
-  end function depths_where_they_lie
-
-  !> Depth of a place of a side, or another where the die is nowhere near.
-  pure function depth_at(die, side, xi, otherwise) result(depth)
-    type(die_t), intent(in) :: die
-    real(wp), intent(in) :: side(2, 3)   !! nodes, in the axes of the pilot [length]
-    real(wp), intent(in) :: xi
-    real(wp), intent(in) :: otherwise    !! [length]
-    real(wp) :: depth                    !! [length]
-    type(closest_point_t) :: closest
-    real(wp) :: phi(3), dphi(3)
-
-    call line3(xi, phi, dphi)
-    call closest_on_pieces(die, matmul(side, phi), 1, size(die%pieces, 3), closest)
-    depth = otherwise
-    if (closest%piece > 0) depth = closest%d
-  end function depth_at
+  end subroutine measure
 
 end module point_depths

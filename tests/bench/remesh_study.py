@@ -147,7 +147,7 @@ def cost_of_error(uniform, error, column, measure="error"):
     return math.exp(curve[-1][1]), "> "
 
 
-def held(uniform, out, first, seconds, reference):
+def compared(uniform, out, first, seconds, reference):
     """A run that was made anew, with its errors and costs; and what uniform meshes of these errors cost."""
     row = dict(errors_of(out, reference), work=cost(out, first), seconds=seconds)
     others = [cost_of_error(uniform, row["error"], "work"), cost_of_error(uniform, row["error"], "seconds"),
@@ -196,7 +196,7 @@ def main():
     cycles += [(f"contour, {sizes[0]} to {sizes[1]}" if sizes else "contour, `REMSH` alone", None, outlined_deck(k, sizes)) for k, sizes in enumerate(OUTLINED)]
     for name, first, deck in cycles:
         out = deck[:-len(".lag")]
-        row, others = held(uniform, out, first, min(run("lagacycle", deck, out) for _ in range(repeat)), reference)
+        row, others = compared(uniform, out, first, min(run("lagacycle", deck, out) for _ in range(repeat)), reference)
         remeshed.append(row)
         lines.append(f"| remeshed | {name} | {1 + len(glob.glob(os.path.join(out, '*.restart.json')))} | {row_of(row)} | "
                      f"{others[0][1]}{others[0][0] / 1e6:.2f} | {others[1][1]}{others[1][0]:.2f} | {others[2][1]}{others[2][0]:.2f} |")
