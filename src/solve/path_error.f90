@@ -23,7 +23,7 @@ module path_error
   use path_states, only: advance_beside, begin_beside, flow_energy, has_path, has_stress, on_nodes, root_energy, &
                          unbalanced_forces
   use path_stress, only: carry_errors
-  use resting_bodies, only: take_back_ride
+  use resting_bodies, only: remove_rigid_motion
   use round_off_floors, only: round_off_motion
   use scene, only: scene_t
   use solution, only: solution_t
@@ -83,7 +83,7 @@ contains
         ! what follows is of no use then, and may not take the error's place
         if (allocated(outcome%error)) exit estimate
         ! what a body goes that only its drag resists is no answer to forces of a path
-        call take_back_ride(scene, equations, solution, error)
+        call remove_rigid_motion(scene, equations, solution, error)
         step%motion = mean_square(on_nodes(equations, outcome%du))
         step%motion_error = mean_square(on_nodes(equations, error))
         call drop_round_off(equations, solution, step)

@@ -27,7 +27,7 @@ module path_stress
   use path_heat, only: follow_heat, warmth_t
   use path_record, only: error_weight, largest_linear, path_record_t, path_step_t, state_error_t, stress_scale
   use path_states, only: advance_beside, begin_beside, of_unknowns, on_nodes, root_energy, unbalanced_forces
-  use resting_bodies, only: take_back_ride
+  use resting_bodies, only: remove_rigid_motion
   use scene, only: plane_stress, scene_t
   use solution, only: group_state_t, solution_t
   use step_outcome, only: outcome_t
@@ -85,7 +85,7 @@ contains
     call unbalanced_forces(scene, equations, solution, outcome%du, residual)
     call solve_correction(equations, residual/small, answer, outcome%error, at_hand=.true.)
     if (allocated(outcome%error)) return
-    call take_back_ride(scene, equations, solution, answer)
+    call remove_rigid_motion(scene, equations, solution, answer)
     residual = residual/small + weight*force
     answer = answer + weight*own
     share = 1

@@ -24,7 +24,7 @@ module resting_bodies
   use volumes_of_unknowns, only: volumes_of_nodes
   implicit none
   private
-  public :: leave_at_rest, light, strengthen_drag, take_back_ride, work_of_drag
+  public :: leave_at_rest, light, strengthen_drag, remove_rigid_motion, work_of_drag
 
   !> Force that moves a body by its extent, over its modulus and section: above round-off of forces, below what strains it.
   real(wp), parameter :: drag = 1.0e-7_wp
@@ -78,67 +78,71 @@ contains
     equations%more_drag = merge(min(stronger*equations%more_drag, strongest), 1.0_wp, failed)
   end subroutine strengthen_drag
 
-  !> A motion that answers forces which balance each other does not carry a body on that only its drag resists: what it is carried
-  !> as a whole is taken back, its strain stays. Ways as a whole are those that no support bars: translations, and in the plane the
-  !> turn; where forces balance to round-off alone the drag makes any of them large.
-  subroutine take_back_ride(scene, equations, solution, motion)
+  !> Take the rigid motions of bodies that only their drag resists out of a motion that answers forces which balance each other: but
+  !> for round-off these forces move no body as a whole, and against the drag round-off is a large motion. The strain stays. Rigid
+  !> motions are those that no support bars: translations and, in the plane, the turn.
+  subroutine remove_rigid_motion(scene, equations, solution, motion)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     real(wp), intent(inout) :: motion(:)   !! (ndof) [unknown]
-    real(wp) :: x(2, size(equations%loose)), way(size(motion))
+    real(wp) :: x(2, size(equations%loose)), rigid(size(motion))
     logical :: barred(2)
     integer :: b, c
+    integer, parameter :: turn = 0
 
     if (size(equations%loose) == 0) return
     if (.not. any(equations%drag > 0)) return
     x = present_coordinates(scene, solution)
     do b = 1, maxval(equations%loose)
       do c = 1, 2
-        call find_way(c, way, barred(c))
-        if (.not. barred(c)) call take_back(way)
+        call find_rigid(c, barred(c))
+        if (.not. barred(c)) call take_out()
       end do
       if (any(barred) .or. scene%plane_state == axisymmetric) cycle
-      call find_way(0, way, barred(1))
-      call take_back(way)
+      call find_rigid(turn, barred(1))
+      call take_out()
     end do
 
   contains
 
-    !> The motion of the body as a whole along an axis, or by a turn (0) about its middle.
-    subroutine find_way(axis, way, barred)
+    !> The translation of the body along an axis, or its turn about the middle of its drag: in the mean that moves none of it.
+    subroutine find_rigid(axis, barred)
       integer, intent(in) :: axis
-      real(wp), intent(out) :: way(:)    !! (ndof)
       logical, intent(out) :: barred     !! by a support
-      real(wp) :: middle(2)
+      real(wp) :: middle(2), weight(size(equations%loose))
       integer :: k, c
 
-      way = 0
+      rigid = 0
       barred = .false.
-      middle = sum(x, 2, mask=spread(equations%loose == b, 1, 2))/max(count(equations%loose == b), 1)
       associate (number => equations%dofs%fields(displacement_field)%number)
+        weight = 0
+        do k = 1, size(weight)
+          if (equations%loose(k) == b .and. number(1, k) > 0) weight(k) = equations%drag(number(1, k))
+        end do
+        middle = 0
+        if (sum(weight) > 0) middle = matmul(x, weight)/sum(weight)
         do k = 1, size(equations%loose)
           if (equations%loose(k) /= b) cycle
           do c = 1, 2
             if (number(c, k) == 0 .or. axis == 3 - c) cycle
-            way(number(c, k)) = 1
-            if (axis == 0) way(number(c, k)) = merge(middle(2) - x(2, k), x(1, k) - middle(1), c == 1)
+            rigid(number(c, k)) = 1
+            if (axis == turn) rigid(number(c, k)) = merge(middle(2) - x(2, k), x(1, k) - middle(1), c == 1)
             barred = barred .or. .not. equations%dofs%is_free(number(c, k))
           end do
         end do
       end associate
       if (axis == 1 .and. scene%plane_state == axisymmetric) barred = .true.
-    end subroutine find_way
+    end subroutine find_rigid
 
-    !> The share of a way in the motion, weighed by the drag.
-    subroutine take_back(way)
-      real(wp), intent(in) :: way(:)   !! (ndof)
+    !> Take the share of the rigid motion out, weighed by the drag.
+    subroutine take_out()
       real(wp) :: weight
 
-      weight = sum(equations%drag*way**2)
-      if (weight > 0) motion = motion - sum(equations%drag*way*motion)/weight*way
-    end subroutine take_back
-  end subroutine take_back_ride
+      weight = sum(equations%drag*rigid**2)
+      if (weight > 0) motion = motion - sum(equations%drag*rigid*motion)/weight*rigid
+    end subroutine take_out
+  end subroutine remove_rigid_motion
 
   !> Work that the drag took in a step [energy].
   pure function work_of_drag(equations, du) result(work)
