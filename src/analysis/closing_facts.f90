@@ -26,6 +26,7 @@ module closing_facts
   use kinds, only: wp
   use path_record, only: motion_error, stress_error, whole_stress_error
   use pending_heat, only: pending_temperature
+  use phases_in_space, only: errors_of_phases, phase_errors_t
   use remeshing, only: stress_error_of_all
   use scene, only: is_solid, scene_t
   use solution, only: solution_t
@@ -62,6 +63,8 @@ module closing_facts
     !> volume [temperature]; in how many steps they were followed, 0 where temperatures stand on 8 nodes.
     integer :: space_steps = 0
     real(wp) :: space_now = 0.0_wp, space_largest = 0.0_wp, space_mean = 0.0_wp, space_mean_largest = 0.0_wp
+    !> Errors of phases that these make, at the end.
+    type(phase_errors_t) :: phases
     !> What the plastic work of the last step would warm the bodies by that has not become heat (SOLVE ONCE) [temperature].
     real(wp) :: heat_due = 0.0_wp
     !> Error of the stress that the errors of temperatures make, where no law flows.
@@ -112,6 +115,7 @@ contains
     closing%space_largest = min(solution%heat%space_largest, solution%heat%hottest - solution%heat%coldest)
     closing%space_mean = solution%heat%space_mean
     closing%space_mean_largest = solution%heat%space_mean_largest
+    if (closing%space_steps > 0) call errors_of_phases(scene, solution, closing%phases)
     if (solution%work%elastic > energy_without_strain(scene, equations, volume)) closing%heat_stress = solution%heat%stress_error
     closing%heat_due = pending_temperature(scene, equations%laws, equations%drivers, solution)
     closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))

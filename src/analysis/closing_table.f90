@@ -6,6 +6,7 @@ module closing_table
   use cost_file, only: remesher_task
   use json_writer, only: json_t
   use kinds, only: wp
+  use phases_in_space, only: phase_errors_t, words_of_phases
   use text, only: percent, string_t, to_text
   implicit none
   private
@@ -37,6 +38,7 @@ contains
       call row('in space', 'heat: '//to_text(closing%space_now, 3)//' [temperature] at the end, at most ' &
                //to_text(closing%space_largest, 3)//' (mean square '//to_text(closing%space_mean_largest, 3)//')', &
                times(closing%space_cost)//' the time: twice the elements')
+      if (closing%phases%followed) call row('', 'phases by it, at the end: '//words_of_phases(closing%phases), '')
     else if (closing%warm) then
       call row('in space', 'heat: not estimated (temperatures of 8 nodes)', '')
     end if
@@ -183,6 +185,7 @@ contains
       call json%add('largest', closing%space_largest)
       call json%add('mean_end', closing%space_mean)
       call json%add('mean_largest', closing%space_mean_largest)
+      if (closing%phases%followed) call add_phases(json, closing%phases)
       call json%add('half_costs', closing%space_cost)
       call json%end_object()
     end if
@@ -195,5 +198,18 @@ contains
     if (allocated(closing%accuracy)) call add_accuracy(json, closing%accuracy)
     call json%end_object()
   end subroutine add_closing
+
+  !> Errors of phases in space.
+  subroutine add_phases(json, phases)
+    type(json_t), intent(inout) :: json
+    type(phase_errors_t), intent(in) :: phases
+
+    call json%add('phase', trim(phases%phase))
+    call json%add('fraction', phases%largest)
+    call json%add('fraction_mean', phases%mean)
+    if (.not. phases%hard) return
+    call json%add('hardness', phases%hardness)
+    call json%add('hardness_mean', phases%hardness_mean)
+  end subroutine add_phases
 
 end module closing_table

@@ -173,7 +173,7 @@ contains
       //' of '//to_text(solution%step)//' steps, first at time '//to_text(solution%unstable_from, 6)//': a perfect part stays ' &
       //'in them, any other buckles or necks (move nodes by a thousandth of the thickness to see how)')
     if (run%exit_code /= exit_done) return
-    call warn_of_coarse_heat(solution, warnings)
+    call warn_of_coarse_heat(scene, solution, warnings)
     call warn_of_folds(scene, warnings)
     call warn_of_thinned_sheets(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)

@@ -141,6 +141,8 @@ contains
       else if (size(after%groups(g)%error) > 0) then
         after%path%unknown = 1
       end if
+      if (size(before%groups(k)%space_error, 3) == size(after%groups(g)%space_error, 3)) &
+        call take_state(old%groups(k), before%groups(k)%space_error, new%groups(g), after%groups(g)%space_error)
       after%groups(g)%trial = after%groups(g)%committed
       if (new%groups(g)%pairs == 0 .or. new%groups(g)%host > 0 .or. old%groups(k)%pairs == 0) cycle
       if (all(shape(after%pairs(new%groups(g)%pairs)%piece) == shape(before%pairs(old%groups(k)%pairs)%piece))) &

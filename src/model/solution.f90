@@ -29,6 +29,9 @@ module solution
     !> Error of the committed state that comes of the path within steps, or of phases that come of that of the temperatures; of no
     !> elements where it is not estimated.
     real(wp), allocatable :: error(:, :, :)
+    !> States of points with phases that temperatures without their error in space would make, less the committed ones
+    !> (space_phases); of no elements where they are not followed.
+    real(wp), allocatable :: space_error(:, :, :)
     !> Displacements of its nodes when it came, of a body that was laid down (ASLEEP) where strains are small (2, node, element);
     !> not allocated, or of no elements, where it was there from the start [length].
     real(wp), allocatable :: laid(:, :, :)
@@ -167,6 +170,10 @@ contains
         if (any(group%role == [role_body, role_second]) .and. (scene%follows_path .or. has_phases(scene, group))) &
           n = size(group%connectivity, 2)
         allocate (state%error(size(state%committed, 1), npoint, n), source=0.0_wp)
+        n = 0
+        if (nfiner > 0 .and. has_phases(scene, group) .and. find_variable(group%variables, 'stress') == 0) &
+          n = size(group%connectivity, 2)
+        allocate (state%space_error(size(state%committed, 1), npoint, n), source=0.0_wp)
       end associate
     end do
     nsolid = 0

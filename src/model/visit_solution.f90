@@ -261,6 +261,7 @@ contains
 
     call visitor%member('state', self%committed, by_variable, 'component, point, element')
     call visitor%member('path_error', self%error, of_the_mesh, 'component, point, element')
+    call visitor%member('space_error', self%space_error, of_the_mesh, 'component, point, element')
     call visitor%member('laid', self%laid, of_the_mesh, 'component, node, element', 'length')
     call visitor%derived('trial', 'every step begins it as the committed state')
   end subroutine visit_group_state

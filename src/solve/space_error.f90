@@ -29,6 +29,7 @@ module space_error
   use linear_solver, only: solve_unrefined
   use scene, only: scene_t
   use solution, only: solution_t
+  use space_phases, only: follow_space_phases
   use step_outcome, only: outcome_t
   implicit none
   private
@@ -49,6 +50,8 @@ contains
     type(outcome_t), intent(in) :: outcome
     type(error_t), allocatable, intent(out) :: error
     type(fine_system_t) :: system
+    real(wp), allocatable :: finer(:)
+    real(wp), dimension(size(scene%mesh%coordinates, 2)) :: at_start, at_end
     integer :: field, now, timer
 
     field = find_field(scene%fields, 'temperature')
@@ -64,24 +67,28 @@ contains
       call place_fine_mesh(scene, solution, equations%fine)
     end if
     if (equations%fine%nelement > 0) then
-      call make_system(scene, equations, solution, field, dt, outcome, system)
+      call make_system(scene, equations, solution, field, dt, outcome, at_start, at_end, system)
+      finer = solution%heat%finer
       call advance(scene, equations, solution, field, dt, in_two_stages(scene, solution, outcome), outcome%iterations > 0, &
                    system, error)
+      if (.not. allocated(error)) &
+        call follow_space_phases(scene, equations, equations%fine, at_start, at_end, finer, solution%heat%finer, dt, solution)
     end if
     equations%now = now
     call equations%timers%stop(timer)
   end subroutine follow_space_error
 
-  !> The balance of the step on the fine mesh.
-  subroutine make_system(scene, equations, solution, field, dt, outcome, system)
+  !> The balance of the step on the fine mesh, and the temperatures of the mesh at both ends of it.
+  subroutine make_system(scene, equations, solution, field, dt, outcome, before, now, system)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     integer, intent(in) :: field
     real(wp), intent(in) :: dt
     type(outcome_t), intent(in) :: outcome
+    real(wp), intent(out) :: before(:), now(:)   !! (nnode of the mesh) [temperature]
     type(fine_system_t), intent(out) :: system
-    real(wp), dimension(size(scene%mesh%coordinates, 2)) :: before, now, mean
+    real(wp) :: mean(size(scene%mesh%coordinates, 2))
     logical :: two_stages
     integer :: n, d
 

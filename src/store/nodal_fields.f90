@@ -13,9 +13,11 @@ module nodal_fields
   use text, only: string_t
   implicit none
   private
-  public :: list_nodal_fields, nodal_field
+  public :: list_nodal_fields, nodal_field, error_prefix
 
   character(len=*), parameter :: mises_name = 'mises'
+  !> Before the name of a component: its error that comes of temperatures in space (space_phases).
+  character(len=*), parameter :: error_prefix = 'error_'
 
 contains
 
@@ -85,6 +87,9 @@ contains
           call component_names(scene%groups(g)%variables, own)
           c = place_of(name, own)
           if (c > 0) call add_elements(nodes, state(c, :, :), average)
+          if (c > 0 .or. index(name, error_prefix) /= 1 .or. size(solution%groups(g)%space_error) == 0) cycle
+          c = place_of(name(len(error_prefix) + 1:), own)
+          if (c > 0) call add_elements(nodes, solution%groups(g)%space_error(c, :, :), average)
         end if
       end associate
     end do

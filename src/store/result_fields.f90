@@ -1,16 +1,19 @@
 !> Fields of an instant among the results: at nodes, of elements, and the state at the points, each with its unit.
 module result_fields
   use fields, only: field_t
+  use hardness, only: has_hardness
   use hdf5_file, only: hdf5_file_t
   use heat_record, only: finer_share
   use kinds, only: wp
-  use nodal_fields, only: list_nodal_fields, nodal_field
+  use nodal_fields, only: error_prefix, list_nodal_fields, nodal_field
+  use phase_state, only: at_hardness, state_names
   use quadrature, only: square_rule
   use scene, only: scene_t
   use shape_functions, only: quad8
   use solution, only: solution_t
   use state_variables, only: component_names, state_variable_t, total_components
-  use text, only: string_t, to_text
+  use steels, only: phase_count
+  use text, only: add_text, string_t, to_text
   use xdmf_grid, only: xdmf_field_t, xdmf_grid_t
   implicit none
   private
@@ -79,7 +82,35 @@ contains
     if (solution%heat%space_steps == 0) return
     at = finer_share*solution%heat%finer(:size(scene%mesh%coordinates, 2))
     call put_scalar(file, 'error_temperature', at, 'temperature', grid)
+    call list_errors_of_phases(scene, solution, names)
+    do k = 1, size(names)
+      call nodal_field(scene, solution, error_prefix//names(k)%s, at)
+      call put_scalar(file, error_prefix//names(k)%s, at, unit_of(scene, names(k)%s), grid)
+    end do
   end subroutine put_nodal_fields
+
+  !> Fractions of phases, and the hardness of steels that have one, whose errors by temperatures in space are followed.
+  pure subroutine list_errors_of_phases(scene, solution, names)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable, intent(out) :: names(:)   !! (nname)
+    logical :: followed, hard
+    integer :: g, i
+
+    followed = .false.
+    hard = .false.
+    do g = 1, size(scene%groups)
+      if (size(solution%groups(g)%space_error) == 0) cycle
+      followed = .true.
+      hard = hard .or. has_hardness(scene%materials(scene%groups(g)%material)%steel)
+    end do
+    allocate (names(0))
+    if (.not. followed) return
+    do i = 1, phase_count
+      call add_text(names, trim(state_names(i)))
+    end do
+    if (hard) call add_text(names, trim(state_names(at_hardness)))
+  end subroutine list_errors_of_phases
 
   !> Unit of a component of the state of a body; that of von Mises' stress, which is none.
   pure function unit_of(scene, name) result(unit)
