@@ -6,7 +6,7 @@ module watch_mesh
   use listing, only: list_lines, listing_t
   use narrow_contacts, only: measure_narrow, narrow_t
   use narrow_loads, only: note_narrow
-  use remeshing, only: never, trigger_t, trigger_words
+  use remeshing, only: has_limit, never, trigger_t, trigger_words
   use scene, only: scene_t
   use solution, only: solution_t
   use text, only: string_t, to_text
@@ -95,7 +95,8 @@ contains
     if (size(found) > 0) call ask_for_mesh(scene, found, listing, solution)
   end subroutine ask_for_trims
 
-  !> Ask for a new mesh when a step has been cut back often on one that was good before, or can be cut back no more.
+  !> Ask for a new mesh when a step has been cut back often on one that was good before (DISTRESS), or can be cut back no more: the
+  !> run would end with it, by whatever limits meshes are replaced.
   subroutine answer_distress(scene, cutbacks, give_up, listing, solution)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: cutbacks   !! one after the other
@@ -103,7 +104,7 @@ contains
     type(listing_t), intent(in) :: listing
     type(solution_t), intent(inout) :: solution
 
-    if (scene%remesh%distress == huge(0) .or. .not. was_good(scene, solution)) return
+    if (.not. has_limit(scene%remesh) .or. .not. was_good(scene, solution)) return
     if (.not. give_up .and. cutbacks < scene%remesh%distress) return
     call ask_for_mesh(scene, [distress_trigger(scene, cutbacks)], listing, solution)
     ! what comes next is another mesh, or one more try

@@ -127,7 +127,8 @@ contains
 
     words = name
     if (name == of_distress .and. value < limit) then
-      words = words//' '//to_text(value, 4)//' at the least step (limit '//to_text(limit)//')'
+      words = words//' '//to_text(value, 4)//' at the least step'
+      if (limit < real(huge(0), wp)) words = words//' (limit '//to_text(limit)//')'
     else if (name /= trim_trigger) then
       words = words//' '//to_text(value, 4)//' (limit '//to_text(limit)//')'
     end if
