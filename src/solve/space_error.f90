@@ -9,10 +9,10 @@
 !> implicit Euler, with C the capacity, K the flows of the fine mesh,
 !>   (C/dt + K) d1 = C d0/dt + r;
 !> in a step of TR-BDF2 in two stages of the length D dt (SDIRK2: R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006-1021), which
-!> have the matrix of the step. Each is solved by one cycle of two grids (W. Hackbusch, Multi-Grid Methods and Applications, 1985):
+!> have the matrix of the step. Each is solved by cycles of two grids (W. Hackbusch, Multi-Grid Methods and Applications, 1985):
 !> relaxation on the fine one (A.H. Baker et al., SIAM J. Sci. Comput. 33 (2011) 2864-2887: by the sizes of the rows, which
 !> converges at any step), correction by the factors at hand of the mesh itself, relaxation. It begins with the difference of the
-!> stage before, so little is left of what a cycle leaves.
+!> stage before: in short steps one cycle is enough.
 module space_error
   use equations, only: equations_t, take_turn
   use errors, only: error_t
@@ -37,6 +37,10 @@ module space_error
 
   !> Relaxations before and after the correction.
   integer, parameter :: relaxations = 2
+  !> Cycles end where this share of the right side is left in the norm of the rows, or are so many: in long steps, in which latent
+  !> heat comes and goes, one leaves half of what it should find.
+  real(wp), parameter :: left_share = 0.05_wp
+  integer, parameter :: most_cycles = 4
 
 contains
 
@@ -200,7 +204,7 @@ contains
     end associate
   end subroutine find_fixed
 
-  !> One cycle for (C/length + K) d = rhs.
+  !> Cycles for (C/length + K) d = rhs.
   subroutine solve_stage(equations, field, system, fixed, at_hand, length, rhs, d, error)
     type(equations_t), intent(inout) :: equations
     integer, intent(in) :: field
@@ -212,8 +216,8 @@ contains
     real(wp), intent(inout) :: d(:)         !! (nnode) [temperature]
     type(error_t), allocatable, intent(out) :: error
     real(wp), dimension(size(d)) :: rows, free, residual, correction, change
-    real(wp) :: energy
-    integer :: k
+    real(wp) :: energy, enough
+    integer :: k, cycle_number
     logical :: found
 
     rows = system%capacity/length + row_sums_of_flow(equations%fine, system)
@@ -221,28 +225,38 @@ contains
     free = rhs
     where (fixed) free = 0
     residual = free - of_difference_in_step(d)
-    do k = 1, 2*relaxations + 1
-      if (k == relaxations + 1) then
-        if (.not. at_hand) cycle
+    enough = left_share*norm2(free/sqrt(rows))
+    do cycle_number = 1, merge(most_cycles, 1, at_hand)
+      if (cycle_number > 1 .and. norm2(residual/sqrt(rows)) <= enough) exit
+      call relax()
+      if (at_hand) then
         call correct_by_mesh(equations, field, to_corners(equations%fine, residual)/system%stiffened, correction, found, error)
         if (allocated(error)) return
-        if (.not. found) cycle
-        correction = to_nodes(equations%fine, correction/system%stiffened)
-        where (fixed) correction = 0
-        change = of_difference_in_step(correction)
-        ! as far as the energy of what is left falls
-        energy = dot_product(correction, change)
-        if (.not. energy > 0) cycle
-        energy = dot_product(correction, residual)/energy
-        d = d + energy*correction
-        residual = residual - energy*change
-      else
-        d = d + residual/rows
-        residual = free - of_difference_in_step(d)
+        if (found) call take_correction()
       end if
+      call relax()
     end do
 
   contains
+
+    subroutine relax()
+      do k = 1, relaxations
+        d = d + residual/rows
+        residual = free - of_difference_in_step(d)
+      end do
+    end subroutine relax
+
+    !> As far as the energy of what is left falls.
+    subroutine take_correction()
+      correction = to_nodes(equations%fine, correction/system%stiffened)
+      where (fixed) correction = 0
+      change = of_difference_in_step(correction)
+      energy = dot_product(correction, change)
+      if (.not. energy > 0) return
+      energy = dot_product(correction, residual)/energy
+      d = d + energy*correction
+      residual = residual - energy*change
+    end subroutine take_correction
 
     !> (C/length + K) t, 0 where temperatures are imposed.
     function of_difference_in_step(t) result(power)

@@ -242,7 +242,6 @@ def steels(checks):
         with coarse.open() as file:
             nodal = np.abs(file[f"steps/{sorted(file['steps'])[-1]}/node/error_hardness"][()]).max()
         checks.that(0.5*told["hardness"] < nodal <= told["hardness"], "saved at the nodes", f"{nodal} of {told['hardness']}")
-        # long steps leave errors of their own in what is followed
         text = STEEL.format(**numbers, n=n) + TIMES.format(**{**times, "longest": 1.})
         parts = [text, text.replace("STOP", "OPERA one\nSTOP 30.\nOPERA two\nSTOP")]
         means = []
