@@ -18,8 +18,10 @@ module heat_check
   use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
   use solution, only: start_fields
   use state_variables, only: find_variable
+  use steel_temperatures, only: judge_steel_temperatures
   use steel_units, only: judge_units
   use text, only: add => add_text, string_t, to_text
+  use torch_units, only: judge_torch_powers
   use vectors, only: length_of
   use weld_sources, only: felt_ahead, power_in_plane, share_within
   implicit none
@@ -57,7 +59,9 @@ contains
     call judge_zeros(scene, laws, warnings)
     call judge_units(scene, laws, warnings)
     if (.not. lacks_mesh(scene)) call judge_isolated(scene, laws, warnings)
+    call judge_torch_powers(scene, laws, warnings)
     call judge_kinetics(scene, warnings)
+    call judge_steel_temperatures(scene, warnings)
     call judge_hardness(scene, warnings)
     call judge_cycle_heat(scene, laws, warnings)
     if (scene%fields(displacement_field)%declared) return

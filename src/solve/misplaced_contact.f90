@@ -8,18 +8,15 @@
 !> by them; both ways, as points are few and the mean of what they do is wanted. It is an error of the temperatures at the end of
 !> the step, carried on with the others (heat_error). No length of a step follows from it, for places err by all steps so far.
 !>
-!> Errors of places come to be while a point is open or slides, and are carried on without contact (path_stress). Those of points
-!> that have come to bear since are pressed back first: by the forces that contact makes of a small share of them.
-!> Pressures stay those of the step: of what errors of places would change of them the motion balances most. A point that closes
-!> bears nothing yet. Where forces move a die errors of gaps are not known, and nothing is added.
+!> What the errors make of forces is balanced first, each way (contact_beside): a point that comes to bear does so by what resists
+!> it, and places keep within the gaps that dies leave. Where a body rests between dies that press it no more, where it lies does
+!> not count, and a point that closes bears nothing yet; nor does it in steps whose matrix is not at hand, where pressures stay
+!> those of the step. Where forces move a die errors of gaps are not known, and nothing is added.
 module misplaced_contact
   use contact_conductance, only: conductance_count, conductance_of_solution, hand_over
   use contact_lag, only: add_rates
-  use corrections, only: solve_correction
-  use dofs, only: move_fields
+  use contact_beside, only: anything_rests, balance, contact_from
   use drivers, only: at_pressure, at_status
-  use elem_api, only: block_done, instant_t, report_t
-  use element_loop, only: gather_forces, run_elements
   use equations, only: equations_t, take_turn
   use fields, only: displacement_field, find_field
   use heat_error, only: flows
@@ -28,37 +25,37 @@ module misplaced_contact
   use kinds, only: wp
   use law_api, only: contact_open
   use path_states, only: of_unknowns, on_nodes
+  use resting_bodies, only: remove_rigid_motion
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
-  use step_instants, only: make_instant
   use step_outcome, only: outcome_t
   use timers, only: ledger_t
   implicit none
   private
   public :: add_misplaced
 
-  !> Share of the errors along which forces of contact are taken as linear.
-  real(wp), parameter :: small = 1.0e-3_wp
-  !> An answer of which contact takes so large a share the other way goes too far.
-  real(wp), parameter :: too_far = 0.1_wp
+  !> A change of conductances that is no more than this share of them is left out.
+  real(wp), parameter :: negligible = 3.0e-4_wp
 
 contains
 
   !> After the path within a step has been judged: errors of its temperatures with those of its contact. Forces, element forces and
   !> states stay those of the step. Nothing where one of both errors is not estimated, or no heat passes by contact that moves.
-  subroutine add_misplaced(scene, equations, solution, dt, outcome)
+  subroutine add_misplaced(scene, equations, solution, dt, at_hand, outcome)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution   !! its trial state is that of the step
-    real(wp), intent(in) :: dt   !! [time]
+    real(wp), intent(in) :: dt       !! [time]
+    logical, intent(in) :: at_hand   !! factors of a matrix of the motion of this step are
     type(outcome_t), intent(inout) :: outcome
     type(evaluation_t) :: kept
     type(acting_t) :: asked
     type(group_state_t), allocatable :: states(:)
     real(wp), allocatable :: errors(:), now(:), with(:), against(:)
-    real(wp) :: rates(equations%dofs%ndof)
+    type(solution_t) :: other
+    real(wp), dimension(equations%dofs%ndof) :: rates, force, with_errors, against_errors
     integer :: solve, timer, g
-    logical :: done
+    logical :: done, balanced, rests
 
     if (.not. (outcome%converged .and. outcome%heat%estimated .and. scene%follows_path)) return
     if (conductance_count(equations%drivers) == 0 .or. free_beside_nodes(scene, equations)) return
@@ -75,14 +72,22 @@ contains
     call keep_evaluation(equations, kept)
     allocate (states, source=solution%groups)
     call take_turn(equations, displacement_field)
-    if (outcome%path%estimated) call press_back(scene, equations, solution, dt, errors, outcome)
-    if (.not. allocated(outcome%error)) then
-      allocate (now(conductance_count(equations%drivers)))
-      allocate (with, against, mold=now)
-      call conductance_of_solution(scene, solution, equations%drivers, now)
-      call conductance_from(scene, equations, solution, dt, outcome%du, errors, with, done)
-      if (done) call conductance_from(scene, equations, solution, dt, outcome%du, -errors, against, done)
-      if (done .and. any(abs(with - against) > 0)) then
+    other = solution
+    call contact_from(scene, equations, solution, dt, outcome%du, 0*errors, other, done, force)
+    rests = anything_rests(scene, equations, solution, dt, other)
+    if (rests) call remove_rigid_motion(scene, equations, solution, errors)
+    with_errors = errors
+    against_errors = -errors
+    allocate (now(conductance_count(equations%drivers)))
+    allocate (with, against, mold=now)
+    call conductance_of_solution(scene, solution, equations%drivers, now)
+    balanced = done .and. at_hand
+    call conductance_from(scene, equations, solution, dt, force, balanced, rests, outcome, with_errors, other, with, done)
+    if (done) call conductance_from(scene, equations, solution, dt, force, balanced, rests, outcome, against_errors, other, &
+                                    against, done)
+    if (done) then
+      if (balanced) outcome%path%error = on_nodes(equations, 0.5_wp*(with_errors - against_errors))
+      if (sum(abs(with - against)) > negligible*sum(abs(with) + abs(against))) then
         call take_turn(equations, find_field(scene%fields, 'temperature'))
         call ask_for_heat(scene, equations, asked)
         call flows_between(scene, equations, solution, dt, outcome, with, against, rates)
@@ -134,96 +139,30 @@ contains
     end do
   end function is_free
 
-  !> Errors of places with what the forces of contact make of them, by the factors of the step. Where the answer goes too far for
-  !> contact it is shortened as a line search does.
-  subroutine press_back(scene, equations, solution, dt, errors, outcome)
+  !> Conductances of contact from other places, by the pressures there or, where these cannot be balanced, those of the step.
+  subroutine conductance_from(scene, equations, solution, dt, force, balanced, rests, outcome, apart, other, values, done)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: dt             !! [time]
-    real(wp), intent(inout) :: errors(:)   !! (ndof) [unknown]
+    real(wp), intent(in) :: dt                !! [time]
+    real(wp), intent(in) :: force(:)          !! (ndof) of contact in the step [residual]
+    logical, intent(in) :: balanced           !! errors are balanced, by factors at hand
+    logical, intent(in) :: rests              !! nothing presses a body
     type(outcome_t), intent(inout) :: outcome
-    type(solution_t) :: other
-    real(wp), dimension(size(errors)) :: force, beside, pressed, magnitude, answer
-    real(wp) :: gain, against
-    logical :: done
-
-    force = 0
-    beside = 0
-    pressed = 0
-    call contact_from(scene, equations, solution, dt, outcome%du, 0*errors, other, done)
-    associate (solve => equations%solves(equations%now))
-      call gather_forces(solve%pattern, equations%buffers, solve%is_own, force, magnitude)
-      if (done) call contact_from(scene, equations, solution, dt, outcome%du, small*errors, other, done)
-      if (.not. done) return
-      call gather_forces(solve%pattern, equations%buffers, solve%is_own, beside, magnitude)
-    end associate
-    call solve_correction(equations, (force - beside)/small, answer, outcome%error, at_hand=.true.)
-    if (allocated(outcome%error)) return
-    answer = of_unknowns(equations, on_nodes(equations, answer))
-    call contact_from(scene, equations, solution, dt, outcome%du, small*(errors + answer), other, done)
-    if (.not. done) return
-    associate (solve => equations%solves(equations%now))
-      call gather_forces(solve%pattern, equations%buffers, solve%is_own, pressed, magnitude)
-    end associate
-    gain = dot_product(force - beside, answer)
-    against = dot_product(force - pressed, answer)
-    ! by a matrix without the contact that presses, as of a body that only its drag resists
-    if (against < -too_far*gain) answer = gain/(gain - against)*answer
-    errors = errors + answer
-    outcome%path%error = on_nodes(equations, errors)
-  end subroutine press_back
-
-  !> Contact at the end of a step that begins at places which are others by so much, with drivers as they were found last. Element
-  !> forces are those of contact then.
-  subroutine contact_from(scene, equations, solution, dt, du, apart, other, done)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(inout) :: equations
-    type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: dt                !! [time]
-    real(wp), intent(in) :: du(:), apart(:)   !! (ndof) motion of the step, and how much others places are [unknown]
-    type(solution_t), intent(out) :: other    !! with trial states of these groups of contact
-    logical, intent(out) :: done              !! false where contact cannot be found
-    type(instant_t) :: instant
-    type(report_t) :: report
-    type(ledger_t) :: within
-    real(wp) :: none(0, 0)
-    logical, dimension(size(scene%groups)) :: active, vary
-    integer :: g
-
-    active = .false.
-    do g = 1, size(active)
-      if (equations%drivers(g)%is_of_heat_contact) active(scene%groups(g)%host) = .true.
-    end do
-    other = solution
-    call move_fields(equations%dofs, apart, other%fields)
-    call make_instant(scene, equations, other, dt, du, .false., instant)
-    instant%pairs = other%pairs
-    equations%buffers%force = 0
-    vary = equations%drivers%vary
-    equations%drivers%vary = .false.
-    call run_elements(scene, equations%elems, equations%kinematics, equations%laws, equations%dofs, active, &
-                      equations%solves(equations%now)%pattern, instant, du, none, other, equations%drivers, equations%buffers, &
-                      within, report)
-    equations%drivers%vary = vary
-    done = report%status == block_done
-  end subroutine contact_from
-
-  !> Conductances of that contact, by the pressures of the step.
-  subroutine conductance_from(scene, equations, solution, dt, du, apart, values, done)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(inout) :: equations
-    type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: dt                !! [time]
-    real(wp), intent(in) :: du(:), apart(:)   !! (ndof) as those of contact_from [unknown]
+    real(wp), intent(inout) :: apart(:)       !! (ndof) errors of places [unknown]
+    type(solution_t), intent(inout) :: other  !! a copy of the solution
     real(wp), intent(out) :: values(:)        !! (conductance_count) [power/area/temperature], [-]
     logical, intent(out) :: done
-    type(solution_t) :: other
     integer :: g
 
-    call contact_from(scene, equations, solution, dt, du, apart, other, done)
+    if (balanced) then
+      call balance(scene, equations, solution, dt, force, outcome, apart, other, done)
+    else
+      call contact_from(scene, equations, solution, dt, outcome%du, apart, other, done)
+    end if
+    if (.not. done) return
     do g = 1, size(scene%groups)
-      if (.not. equations%drivers(g)%is_of_heat_contact) cycle
+      if ((balanced .and. .not. rests) .or. .not. equations%drivers(g)%is_of_heat_contact) cycle
       associate (host => scene%groups(g)%host, source => equations%drivers(g)%source)
         associate (status => source(at_status)%row(host), pressure => source(at_pressure)%row(host), &
                    now => solution%groups(host)%trial)

@@ -57,7 +57,7 @@ contains
     end if
     call judge_contours(scene, equations, solution, outcome)
     call judge_path(scene, equations, solution, dt, corrections_of_motion(equations) > solved, outcome)
-    call add_misplaced(scene, equations, solution, dt, outcome)
+    call add_misplaced(scene, equations, solution, dt, corrections_of_motion(equations) > solved, outcome)
   end subroutine solve_fields
 
   !> A step in which a body has passed through itself is none.

@@ -498,6 +498,26 @@ def told(checks):
         if run.ok:
             lines = told_of(run)
             checks.that(["colder than liquid nitrogen" in line for line in lines] == [True]*cold, f"surroundings of {around:g}, ZERO {zero:g}: told", lines)
+    # temperatures of a steel in kelvin: more than any steel has, or than its composition has
+    for k, (temperatures, more, words) in enumerate((("AC1 730 AC3 850 MS 350", "", None), ("AC1 1003 AC3 1123 MS 623", "", "Ac1 at 1003, that of steels is below 960"),
+                                                     ("AC1 730 AC3 850 MS 650", "", None), ("MS 623", "COMPO C 0.4 MN 0.8\n", "Ms at 623, by its composition about 345"),
+                                                     ("MS 350", "COMPO C 0.4 MN 0.8\n", None), ("AC1 730 AC3 1200 MS 350", "", "Ac3 at 1200, that of steels is below 1150"))):
+        with open(os.path.join(checks.folder, "kelvin.met"), "w") as file:
+            file.write(steel.replace("TEMPS MS 300\n", f"TEMPS {temperatures}\n{more}"))
+        run = Run(checks, f"kelvin-{k}", "TITLE kelvin\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
+                  "   2 1.   2 1.\nLAW hot META\n   STEEL kelvin.met s\n   ENERGY 1.\nSTART T 900.\nCONVE bar 2 H 1. TS 20.\nSTRAT 1. 1. 1. 4 3\nSTOP 1.\nEND\n")
+        if run.ok:
+            lines = told_of(run)
+            checks.that([words is not None and words in line and "kelvin.met:1:" in line for line in lines] == [True]*(words is not None),
+                        f"temperatures of a steel, {temperatures}: told", lines)
+    # power in W where the deck has mW, or the other way
+    for power, wrong in ((2.e3, True), (2.e6, False), (2.e9, True)):
+        run = Run(checks, f"torch-{power:g}", "TITLE torch\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   20. 0.   20. 10.   0. 10.\n"
+                  f"   10 1.   6 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 20.\nGOLDAK bar P {power} ETA 0.8 FRONT 3. REAR 6. WIDTH 4. DEPTH 4. INTO 0. -1. CROSS 6. 4.\n"
+                  "   0. 10. 10.\nSTRAT 0.25 0.25 0.25 4 3\nSTOP 10.\nEND\n")
+        if run.ok:
+            lines = told_of(run)
+            checks.that(["is P in the unit of power of the deck" in line for line in lines] == [True]*wrong, f"torch of {power:g}: told", lines)
     # air until water comes: never both
     run = Run(checks, "in-turns", "TITLE in turns\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n"
               "   2 1.   2 1.\nLAW hot HEAT\n   30. 4.5\nSTART T 100.\nLIC air\n   0. 1.   1. 1.   1.1 0.   2. 0.\nLIC water\n   0. 0.   1. 0.   1.1 1.   2. 1.\n"
