@@ -25,8 +25,10 @@ module accuracy_samples
   !> A quantity that changes by less than this share of the largest change in its unit is none by itself: the work of supports that
   !> hold a part which is quenched is what equilibrium is off by.
   real(wp), parameter :: hardly = 1.0e-3_wp
-  !> Energies that are no quantities themselves, but tell how small a work is.
+  !> Energies that are no quantities themselves, but tell how small a work is; forces of dies, also those that are not judged, as
+  !> round the axis the ones along x, tell how small a force is.
   character(len=*), parameter :: energies(3) = [character(len=14) :: 'elastic_energy', 'plastic_work', 'friction_work']
+  character(len=*), parameter :: of_dies = 'force_'
   !> Beginnings of columns that are judged where the card names none, with the load that LOADF finds and the probes that are no
   !> extremes: those jump from point to point, and grow without bound at sharp corners.
   character(len=*), parameter :: of_section = 'section_'
@@ -196,7 +198,8 @@ contains
       do i = 1, size(titles)
         if (.not. chosen(i)) cycle
         do k = 1, size(titles)
-          if (.not. (chosen(k) .or. any(name_of(titles(k)%s) == energies) .or. index(titles(k)%s, of_section) == 1)) cycle
+          if (.not. (chosen(k) .or. any(name_of(titles(k)%s) == energies) .or. index(titles(k)%s, of_section) == 1 &
+                     .or. index(titles(k)%s, of_dies) == 1)) cycle
           if (unit_of(titles(k)%s) == unit_of(titles(i)%s)) chosen(i) = chosen(i) .and. scales(i) > hardly*scales(k)
         end do
       end do

@@ -59,9 +59,41 @@ contains
       n = n + 1
       call start_with(draft%scene%materials(draft%scene%groups(g)%material)%steel, z/sum(z), draft%scene%groups(g))
     end do
+    call ask_for_data(cursor, draft, body, z > 0)
     if (n == 0) call cursor%fail('there are no phases to begin with: expected a law that keeps them '// &
                                  '(META, METAMEC, ARBTHMET with TIME)')
   end subroutine read_start_phases
+
+  !> Laws of the body, or of all, that have data of phases have those of the given ones, which need not be among the phases that
+  !> form.
+  subroutine ask_for_data(cursor, draft, body, given)
+    type(cursor_t), intent(inout) :: cursor
+    type(draft_t), intent(in) :: draft
+    integer, intent(in) :: body        !! 0: all
+    logical, intent(in) :: given(:)    !! (phase_count)
+    type(string_t), allocatable :: problems(:)
+    character(len=:), allocatable :: all
+    logical :: asked(size(draft%scene%materials))
+    integer :: g, i, m
+
+    asked = .false.
+    all = ''
+    do g = 1, size(draft%scene%groups)
+      if (body > 0 .and. host_of(draft%scene, g) /= body) cycle
+      m = draft%scene%groups(g)%material
+      if (m == 0) cycle
+      if (asked(m) .or. draft%scene%materials(m)%law_id == 0) cycle
+      asked(m) = .true.
+      associate (law => draft%laws(draft%scene%materials(m)%law_id))
+        if (.not. associated(law%check_phases)) cycle
+        call law%check_phases(draft%scene%materials(m), given, problems)
+      end associate
+      do i = 1, size(problems)
+        all = all//merge('; ', ': ', all /= '')//problems(i)%s
+      end do
+    end do
+    if (all /= '') call cursor%fail('the body begins with phases without numbers'//all)
+  end subroutine ask_for_data
 
   !> The state of a group holds phases.
   pure function has_phases(group) result(yes)

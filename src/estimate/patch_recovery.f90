@@ -3,13 +3,15 @@
 !> Around every corner node of the mesh a complete quadratic polynomial is fitted, by least squares, to the values at the 2 x 2
 !> points of the elements that meet there. Nodes where fewer than three elements meet, on the boundary and on material lines, take
 !> the mean of the polynomials of their neighbours that have one; where there is none the patch is widened by a row. Patches whose
-!> points do not determine a quadratic, or hardly do, as a row of elements with two points across, get a linear polynomial. In an
+!> points do not determine a quadratic, or hardly do, as a row of elements with two points across, get one without what they do not
+!> determine (row_polynomials), or where that is more than one term a linear polynomial. In an
 !> element the polynomials of its four corners are blended by the bilinear shape functions, so that a field that is quadratic in x
 !> and y comes out exactly on elements of any shape.
 !> Sources: O.C. Zienkiewicz, J.Z. Zhu, Int. J. Num. Meth. Engng 33 (1992) 1331-1364 and 1365-1382 (patches, points); T. Blacker,
 !> T. Belytschko, Int. J. Num. Meth. Engng 37 (1994) 517-536 (blending).
 module patch_recovery
   use kinds, only: wp
+  use row_polynomials, only: fit_row
   use vertex_patches, only: patches_t
   implicit none
   private
@@ -110,7 +112,7 @@ contains
     real(wp), intent(inout) :: gram(nterm, nterm), right(nvalue, nterm)
     real(wp) :: diagonal
     integer :: i, j, degree_end
-    logical :: checked
+    logical :: checked, fits
 
     degree_end = nterm
     checked = .false.
@@ -130,6 +132,10 @@ contains
       end if
       call eliminate(j, gram)
     end do
+    if (degree_end == 3) then
+      call fit_row(points, hardly, right, fits)
+      if (fits) return
+    end if
     do j = 1, degree_end
       right(:, j) = right(:, j)*gram(j, j)
       do i = j + 1, degree_end

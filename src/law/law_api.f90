@@ -12,7 +12,8 @@ module law_api
   use law_card, only: law_line, law_line_t, line_choice, line_pairs, line_values, parameter, parameter_t
   use law_interfaces, only: contact_open, contact_slip, contact_stick, driver_temperature, law_bends_i, law_check_i, &
                             law_conduct_i, law_done, law_elastic_i, law_flow_i, law_friction_i, law_not_converged, &
-                            law_release_i, law_slide_i, law_store_i, law_swell_i, law_update_i, row_of_volume, row_of_work
+                            law_phases_i, law_release_i, law_slide_i, law_store_i, law_swell_i, law_update_i, row_of_volume, &
+                            row_of_work
   use materials, only: has_number, material_t
   use state_variables, only: state_variable_t
   implicit none
@@ -85,6 +86,8 @@ module law_api
     procedure(law_release_i), nopass, pointer :: release => null()
     !> Relations between the numbers of a card; not associated where there are none.
     procedure(law_check_i), nopass, pointer :: check => null()
+    !> What phases need that are there at the start; not associated where there are none.
+    procedure(law_phases_i), nopass, pointer :: check_phases => null()
   end type law_t
 
 contains

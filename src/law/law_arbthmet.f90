@@ -72,6 +72,7 @@ contains
     row%flow_stress => flow_stress
     row%elastic => elastic_of_austenite
     row%check => check
+    row%check_phases => check_phases
   end function law_arbthmet_row
 
   function parameters() result(list)
@@ -196,5 +197,15 @@ contains
     if (.not. material%steel%isig%given) &
       call add_text(problems, 'the steel '''//material%steel%name//''' has no card ISIG, the effect of stress on its kinetics')
   end subroutine check
+
+  !> Phases that are there at the start and would not form have their mechanics too.
+  pure subroutine check_phases(material, given, problems)
+    type(material_t), intent(in) :: material
+    logical, intent(in) :: given(:)   !! (phase_count)
+    type(string_t), allocatable, intent(out) :: problems(:)
+
+    call lacking_mechanical_data(material%steel, problems, given)
+    if (material%values(place_visco) > 0) call lacking_viscosity(material%steel, problems, given)
+  end subroutine check_phases
 
 end module law_arbthmet

@@ -8,8 +8,8 @@ module law_interfaces
   use text, only: string_t
   implicit none
   private
-  public :: law_bends_i, law_check_i, law_conduct_i, law_elastic_i, law_flow_i, law_friction_i, law_release_i, law_slide_i
-  public :: law_store_i, law_swell_i, law_update_i
+  public :: law_bends_i, law_check_i, law_conduct_i, law_elastic_i, law_flow_i, law_friction_i, law_phases_i, law_release_i
+  public :: law_slide_i, law_store_i, law_swell_i, law_update_i
   public :: law_done, law_not_converged
   public :: contact_open, contact_slip, contact_stick
   public :: driver_temperature, row_of_volume, row_of_work
@@ -155,6 +155,14 @@ module law_interfaces
       type(material_t), intent(in) :: material                  !! at one temperature
       type(string_t), allocatable, intent(out) :: problems(:)   !! (nproblem) a line each, none where all is well
     end subroutine law_check_i
+
+    !> What a material lacks for phases that it begins with and that would not form in it.
+    pure subroutine law_phases_i(material, given, problems)
+      import :: material_t, string_t
+      type(material_t), intent(in) :: material
+      logical, intent(in) :: given(:)                           !! (phase_count)
+      type(string_t), allocatable, intent(out) :: problems(:)   !! (nproblem) a line each, none where all is well
+    end subroutine law_phases_i
   end interface
 
 end module law_interfaces

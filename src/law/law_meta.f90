@@ -63,6 +63,7 @@ contains
     row%swell => swell
     row%release => release
     row%check => check
+    row%check_phases => check_phases
   end function law_meta_row
 
   !> META, with the mean and von Mises' stress of the mechanics on the same body among its drivers.
@@ -206,7 +207,16 @@ contains
     call lacking_heat_data(material%steel, problems)
   end subroutine check
 
-  !> The same of METAMEC, whose steel says how stress acts.
+  !> The same of phases that are there at the start and would not form.
+  pure subroutine check_phases(material, given, problems)
+    type(material_t), intent(in) :: material
+    logical, intent(in) :: given(:)   !! (phase_count)
+    type(string_t), allocatable, intent(out) :: problems(:)
+
+    call lacking_heat_data(material%steel, problems, given)
+  end subroutine check_phases
+
+  !> The numbers of METAMEC: as of META, and the steel says how stress acts.
   pure subroutine check_stress(material, problems)
     type(material_t), intent(in) :: material
     type(string_t), allocatable, intent(out) :: problems(:)

@@ -107,15 +107,18 @@ contains
     end do
   end function phase_conductivities
 
-  !> What the phases that may be there lack for conduction of heat, a line each.
-  pure subroutine lacking_heat_data(steel, problems)
+  !> What the phases that may form lack for conduction of heat, a line each; with `given` those that are there in spite of not
+  !> forming.
+  pure subroutine lacking_heat_data(steel, problems, given)
     type(steel_t), intent(in) :: steel
     type(string_t), allocatable, intent(out) :: problems(:)   !! (nproblem)
+    logical, intent(in), optional :: given(:)                 !! (phase_count)
     logical :: there(phase_count)
     integer :: i
 
     allocate (problems(0))
     there = phases_that_form(steel)
+    if (present(given)) there = given .and. .not. there
     do i = 1, phase_count
       if (.not. there(i)) cycle
       if (.not. is_given(steel%properties(prop_lambda, i))) &

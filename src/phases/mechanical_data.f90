@@ -12,14 +12,17 @@ module mechanical_data
 
 contains
 
-  !> What the phases that may be there lack for their flow by the rate, a line each.
-  pure subroutine lacking_viscosity(steel, problems)
+  !> What the phases that may form lack for their flow by the rate, a line each; with `given` those that are there in spite of not
+  !> forming.
+  pure subroutine lacking_viscosity(steel, problems, given)
     type(steel_t), intent(in) :: steel
     type(string_t), allocatable, intent(inout) :: problems(:)   !! (nproblem) those found are added
+    logical, intent(in), optional :: given(:)                   !! (phase_count)
     logical :: there(phase_count)
     integer :: i
 
     there = phases_that_form(steel)
+    if (present(given)) there = given .and. .not. there
     do i = 1, phase_count
       if (.not. there(i)) cycle
       if (is_given(steel%properties(prop_consistency, i)) .and. is_given(steel%properties(prop_rate, i))) cycle
@@ -27,17 +30,20 @@ contains
     end do
   end subroutine lacking_viscosity
 
-  !> What the phases that may be there lack for their mechanics, a line each.
-  pure subroutine lacking_mechanical_data(steel, problems)
+  !> What the phases that may form lack for their mechanics, a line each; with `given` those that are there in spite of not
+  !> forming: of transformation plasticity they need nothing.
+  pure subroutine lacking_mechanical_data(steel, problems, given)
     type(steel_t), intent(in) :: steel
     type(string_t), allocatable, intent(out) :: problems(:)   !! (nproblem)
+    logical, intent(in), optional :: given(:)                 !! (phase_count)
     logical :: there(phase_count)
     logical, parameter :: from_austenite(phase_count) = [.false., .true., .true., .true., .true., .false.]
     integer :: i
 
     allocate (problems(0))
     there = phases_that_form(steel)
-    if (steel%expansion == expansion_none) &
+    if (present(given)) there = given .and. .not. there
+    if (steel%expansion == expansion_none .and. .not. present(given)) &
       call add_text(problems, 'the steel '''//steel%name//''' has no card EXPAND, the form of strains by temperature and phases')
     do i = 1, phase_count
       if (.not. there(i)) cycle
@@ -48,9 +54,11 @@ contains
       if (has_yield(steel) .neqv. is_given(steel%properties(prop_yield, i))) &
         call add_text(problems, 'the steel '''//steel%name//''' has SY of some phases and none of '// &
                       trim(phase_names(merge(i, austenite, has_yield(steel)))))
+      if (present(given)) cycle
       if (.not. from_austenite(i) .or. any(steel%plasticity == [plasticity_none, plasticity_leblond])) cycle
       call ask_for(i, prop_plasticity, 'KTP', problems)
     end do
+    if (present(given)) return
     if (steel%plasticity == plasticity_leblond .and. .not. has_yield(steel) .and. &
         any(there .and. from_austenite .and. .not. is_given(steel%properties(prop_plasticity, :)))) &
       call add_text(problems, 'the steel '''//steel%name//''' needs KTP of all phases, or SY, for TRIP LEBLOND')

@@ -238,6 +238,17 @@ def moments_of_dies_that_turn(checks):
         checks.that(("moment_up" in judged) == turned and "force_y_up" in judged, f"moment of a die that {'turns' if turned else 'does not turn'}", judged)
 
 
+def forces_in_balance_round_the_axis(checks):
+    """Two rings that are pushed into each other by what they expand: the die's force along the axis is what equilibrium is off by, and not judged."""
+    text = ("TITLE a ring on a hub\nSTATE AXISYM\nKINEM LOG\nBLOCK hub PL8LS 9 al\n   10. 0.   20. 0.   20. 5.   10. 5.\n   2 1.   2 1.\nBLOCK ring PL8LS 9 st\n"
+            "   20. 0.   30. 0.   30. 5.   20. 5.\n   2 1.   2 1.\nLAW al ELATH\n   70000. 0.33 23.E-6\nLAW st ELATH\n   210000. 0.3 12.E-6\n"
+            "LAW dry COUL2D\n   PENETR 1.E-3   PHI 0.\nDIE bore SIDES ring 4\nCNT2D hub 2 bore dry\nFIXED hub 1 3 Y\nFIXED ring 1 3 Y\nTEMPE hub 1. warm\n"
+            "TEMPE ring 1. cold\nLIC warm\n   0. 20.\nLIC cold\n   0. 20.   1. -180.\nSTRAT 0.25 1.E-4 0.25 5 3\nPROBE u NODE UX 30. 0.\nACCURACY 2 %\nEND\n")
+    _, summary, _ = call(checks, "shrunk", text)
+    asked = summary["accuracy"]["asked"]
+    checks.that(list(asked["orders"]) == ["u"] and asked["met"], "the force along the axis that is none is not judged", asked)
+
+
 def columns_of_section_and_load(checks):
     """A bar bent by a moment, judged by its curvature, and by default; a tube widened, judged by the pressure that LOADF finds."""
     bar = ("TITLE a bar bent\nSTATE GPLSTN\nSECTN E FREE\nSECTN KX FORCE 1.3E5 load\nSECTN KY HELD\nKINEM SMALL\nBLOCK bar PL8LS 4 m\n"
@@ -321,6 +332,7 @@ def main():
         probe_beside_a_node(checks)
         none_of_supports(checks)
         moments_of_dies_that_turn(checks)
+        forces_in_balance_round_the_axis(checks)
         columns_of_section_and_load(checks)
         order_of_two_meshes_is_no_end(checks)
         steps_that_hardly_change(checks)

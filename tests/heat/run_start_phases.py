@@ -85,10 +85,10 @@ LIC    way
 GIVEN = "TEMPE  a 1. way\nTEMPE  b 1. way\nLIC    way\n   {way}"
 
 
-def deck(checks, name, way, stop, start, own):
+def deck(checks, name, way, stop, start, own, steel=STEEL):
     first = way.split()[1]
     text = DECK.format(own=f"{own:g}", heat=(GIVEN if own else FIELD).format(first=first, way=way), start=start, stop=stop)
-    write(checks.path(name, "s.met"), STEEL)
+    write(checks.path(name, "s.met"), steel)
     return run([write(checks.path(name, "a.lag"), text), "--out", checks.path(name, "out"), "--threads", "1"])
 
 
@@ -134,12 +134,25 @@ def refused(checks):
         checks.that(result.returncode == 2 and say in said(result), f"refused: {start!r}", said(result))
 
 
+def without_data(checks):
+    """Phases that the steel has no numbers of, and that would not form, are refused: nothing would conduct heat, or take it up."""
+    for own, kept, say in ((0, "", ("begins with phases without numbers: ", "no LAMBDA of FERRITE; ", "either RHOC or H of FERRITE", "no E of FERRITE", "no ALPHA of FERRITE")),
+                           (1, "", ("no E of FERRITE; ", "no DEPS of FERRITE")), (0, "PHASE FERRITE\n   LAMBDA 30\n   RHOC 4.5\n", ("no E of FERRITE",)),
+                           (0, "PHASE FERRITE\n   LAMBDA 30\n   RHOC 4.5\n   E 200000\n   NU 0.3\n   ALPHA 14E-6\n   DEPS 0.008\n", ())):
+        steel = STEEL.replace("PHASE  ALL", "PHASE  AUSTENITE").split("\nPHASE  FERRITE")[0]
+        steel += ("\nPHASE  MARTENSITE\n   LAMBDA 30\n   RHOC 4.5\n   E 200000\n   NU 0.3\n   ALPHA 12E-6\n   DEPS 0.0105\n" + kept + "END\n")
+        result = deck(checks, "without", "0. 400.   10. 390.", 10., "START  PHASES FERRITE 1.", own, steel)
+        told = said(result)
+        checks.that(result.returncode == (2 if say else DONE) and all(words in told for words in say), f"phases without numbers, {own}, {kept!r}", (result.returncode, told))
+
+
 def main():
     checks = Checks()
     heated(checks, 0)
     heated(checks, 1)
     retained(checks)
     refused(checks)
+    without_data(checks)
     checks.end()
 
 
