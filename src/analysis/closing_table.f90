@@ -38,7 +38,7 @@ contains
       call row('in space', 'heat: '//to_text(closing%space_now, 3)//' [temperature] at the end, at most ' &
                //to_text(closing%space_largest, 3)//' (mean square '//to_text(closing%space_mean_largest, 3)//')', &
                times(closing%space_cost)//' the time: twice the elements')
-      if (closing%phases%followed) call row('', 'phases by it, at the end: '//words_of_phases(closing%phases), '')
+      if (closing%phases%followed) call row('', 'phases by these temperatures, at the end: '//words_of_phases(closing%phases), '')
     else if (closing%warm) then
       call row('in space', 'heat: not estimated (temperatures of 8 nodes)', '')
     end if
@@ -205,6 +205,7 @@ contains
     type(phase_errors_t), intent(in) :: phases
 
     call json%add('phase', trim(phases%phase))
+    if (phases%since_mesh) call json%add('since_mesh', .true.)
     call json%add('fraction', phases%largest)
     call json%add('fraction_mean', phases%mean)
     if (.not. phases%hard) return

@@ -9,7 +9,7 @@ module coarse_heat
   private
   public :: warn_of_coarse_heat
 
-  !> Errors up to this share of the range of temperatures of a run, or of a body that errs in a phase, are not warned of.
+  !> Errors up to this share of the range of temperatures of a run, and fractions of phases up to this, are not warned of.
   real(wp), parameter :: expected_share = 0.05_wp
   !> A range of temperatures below this share of them is round-off.
   real(wp), parameter :: resolution = 1.0e-9_wp
@@ -34,7 +34,7 @@ contains
       if (.not. range > resolution*max(abs(heat%hottest), abs(heat%coldest))) return
       call errors_of_phases(scene, solution, phases)
       with = ', and phases and stresses with them'
-      if (phases%followed) with = ', phases by it at the end: '//words_of_phases(phases)
+      if (phases%followed) with = ', and stresses with them; phases by these temperatures, at the end: '//words_of_phases(phases)
       if (max(heat%space_mean_largest, heat%space_now) > expected_share*range) then
         call add_text(warnings, 'the mesh is coarse for its temperatures: in space they err by ' &
                       //to_text(heat%space_mean_largest, 3)//' in the mean square of the volume at time ' &

@@ -80,7 +80,7 @@ contains
       call refuse_mesh(scene, solution, outcome, run, error)
       return
     end if
-    call answer_distress(scene, merge(0, cutbacks, solution%damping > 0), give_up, run%listing, solution)
+    call answer_distress(scene, merge(0, cutbacks, solution%damping > 0), give_up, outcome%passes_itself, run%listing, solution)
     if (mesh_is_due(solution)) then
       if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
       if (.not. allocated(error)) call save_all(scene, solution, run, error)

@@ -15,14 +15,17 @@ module phases_in_space
   public :: phase_errors_t, errors_of_phases, words_of_phases
 
   type :: phase_errors_t
-    !> There are phases whose errors were followed; so was a hardness.
-    logical :: followed = .false., hard = .false.
+    !> Phases err that were followed, from the last new mesh on where there was one; so was a hardness.
+    logical :: followed = .false., since_mesh = .false., hard = .false.
     !> The phase that errs most in the mean square of the volume, largest error of its fraction and that mean [-].
     character(len=len(state_names)) :: phase = ''
     real(wp) :: largest = 0.0_wp, mean = 0.0_wp
     !> The same of the hardness [HV].
     real(wp) :: hardness = 0.0_wp, hardness_mean = 0.0_wp
   end type phase_errors_t
+
+  !> A fraction that errs by no more than that is a sum of round-off.
+  real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains
 
@@ -64,7 +67,9 @@ contains
         end do
       end associate
     end do
+    errors%followed = any(largest > round_off)
     if (.not. errors%followed) return
+    errors%since_mesh = scene%generation > max(scene%operation, 1)
     i = maxloc(square, 1)
     errors%phase = state_names(i)
     errors%largest = largest(i)
@@ -77,7 +82,9 @@ contains
     type(phase_errors_t), intent(in) :: errors
     character(len=:), allocatable :: words
 
-    words = trim(errors%phase)//' '//to_text(errors%largest, 2)//' at most (mean square '//to_text(errors%mean, 2)//')'
+    words = ''
+    if (errors%since_mesh) words = 'since the last mesh '
+    words = words//trim(errors%phase)//' '//to_text(errors%largest, 2)//' at most (mean square '//to_text(errors%mean, 2)//')'
     if (errors%hard) words = words//', hardness '//to_text(errors%hardness, 2)//' HV ('//to_text(errors%hardness_mean, 2)//')'
   end function words_of_phases
 

@@ -18,6 +18,9 @@ module steel_temperatures
   !> Temperatures by a composition are known to less than this [K].
   real(wp), parameter :: scatter = 150.0_wp
 
+  !> The steels of Andrews had no more of C, Mn, Si, Ni, Cr and Mo; beyond that carbides hold carbon that does not lower Ms [%].
+  real(wp), parameter :: most_of(6) = [0.6_wp, 4.9_wp, 1.9_wp, 5.0_wp, 4.6_wp, 5.4_wp]
+
 contains
 
   !> Warnings, one line each: of two laws of one steel once.
@@ -80,6 +83,7 @@ contains
 
     words = ''
     associate (w => steel%composition%w)
+      if (any(w([el_c, el_mn, el_si, el_ni, el_cr, el_mo]) > most_of)) return
       a1 = 723 - 10.7_wp*w(el_mn) - 16.9_wp*w(el_ni) + 29.1_wp*w(el_si) + 16.9_wp*w(el_cr)
       ms = 539 - 423*w(el_c) - 30.4_wp*w(el_mn) - 17.7_wp*w(el_ni) - 12.1_wp*w(el_cr) - 7.5_wp*w(el_mo)
     end associate

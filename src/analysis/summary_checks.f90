@@ -14,6 +14,7 @@ module summary_checks
   use penetration_advice, only: advice_at_points, advice_between_points, allowed_between
   use phase_books, only: fraction_slack, has_fractions
   use run_facts, only: unloaded_drift
+  use remeshing, only: no_limit
   use scene, only: scene_t
   use solution, only: solution_t
   use spring_check, only: has_body_springs, spring_advice, spring_force, spring_share
@@ -147,7 +148,7 @@ contains
         call json%begin_object()
         call json%add('name', trigger%name)
         call json%add('value', trigger%value)
-        call json%add('limit', trigger%limit)
+        if (trigger%limit < no_limit) call json%add('limit', trigger%limit)
         if (trigger%group > 0) then
           call json%add('group', scene%groups(trigger%group)%name)
           call json%add('element', trigger%element)

@@ -96,16 +96,19 @@ contains
   end subroutine ask_for_trims
 
   !> Ask for a new mesh when a step has been cut back often on one that was good before (DISTRESS), or can be cut back no more: the
-  !> run would end with it, by whatever limits meshes are replaced.
-  subroutine answer_distress(scene, cutbacks, give_up, listing, solution)
+  !> run would end with it, by whatever limits meshes are replaced; but where a body has passed through itself, another mesh has the
+  !> same sides.
+  subroutine answer_distress(scene, cutbacks, give_up, passes_itself, listing, solution)
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: cutbacks   !! one after the other
     logical, intent(in) :: give_up    !! the least step has failed
+    logical, intent(in) :: passes_itself   !! a body has passed through itself in it
     type(listing_t), intent(in) :: listing
     type(solution_t), intent(inout) :: solution
 
     if (.not. has_limit(scene%remesh) .or. .not. was_good(scene, solution)) return
     if (.not. give_up .and. cutbacks < scene%remesh%distress) return
+    if (passes_itself .and. scene%remesh%distress == huge(0)) return
     call ask_for_mesh(scene, [distress_trigger(scene, cutbacks)], listing, solution)
     ! what comes next is another mesh, or one more try
     solution%next_step = max(solution%next_step, scene%strategy%least_step)

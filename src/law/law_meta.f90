@@ -199,7 +199,7 @@ contains
     if (temperature < -huge(temperature)) heat = 0   ! a number that holds at any temperature
   end function swell
 
-  !> The steel has conductivity and heat of all phases that may be there.
+  !> The steel has conductivity and heat of all phases that may form.
   pure subroutine check(material, problems)
     type(material_t), intent(in) :: material
     type(string_t), allocatable, intent(out) :: problems(:)

@@ -6,12 +6,14 @@ module remeshing
   implicit none
   private
   public :: carry_error, remesh_rules_t, stroke_t, stress_error_of_all, trigger_t, estimate_t
-  public :: drop_triggers, has_limit, of_distress, of_narrow, trigger_words
+  public :: drop_triggers, has_limit, no_limit, of_distress, of_narrow, trigger_words
   public :: ncriteria, criterion_names, is_upper, never
   public :: least_angle, largest_angle, middle_share, jacobian_ratio, scaled_jacobian, aspect_ratio
 
   !> Why a new mesh is due: cutbacks one after the other, or a step that can be cut back no more.
   character(len=*), parameter :: of_distress = 'distress'
+  !> Limit of a trigger of distress where the deck has none.
+  real(wp), parameter :: no_limit = real(huge(0), wp)
   !> Why: few sides bear a die.
   character(len=*), parameter :: of_narrow = 'narrow_contact'
 
@@ -127,8 +129,11 @@ contains
 
     words = name
     if (name == of_distress .and. value < limit) then
-      words = words//' '//to_text(value, 4)//' at the least step'
-      if (limit < real(huge(0), wp)) words = words//' (limit '//to_text(limit)//')'
+      if (limit < no_limit) then
+        words = words//' '//to_text(value, 4)//' at the least step (limit '//to_text(limit)//')'
+      else
+        words = words//' at the least step'
+      end if
     else if (name /= trim_trigger) then
       words = words//' '//to_text(value, 4)//' (limit '//to_text(limit)//')'
     end if

@@ -34,7 +34,7 @@ module misplaced_contact
   private
   public :: add_misplaced
 
-  !> A change of conductances that is no more than this share of them is left out.
+  !> A change of conductances, or of shares of radiation, that is no more than this share of them is left out.
   real(wp), parameter :: negligible = 3.0e-4_wp
 
 contains
@@ -87,7 +87,7 @@ contains
                                     against, done)
     if (done) then
       if (balanced) outcome%path%error = on_nodes(equations, 0.5_wp*(with_errors - against_errors))
-      if (sum(abs(with - against)) > negligible*sum(abs(with) + abs(against))) then
+      if (differ(with(1::2), against(1::2)) .or. differ(with(2::2), against(2::2))) then
         call take_turn(equations, find_field(scene%fields, 'temperature'))
         call ask_for_heat(scene, equations, asked)
         call flows_between(scene, equations, solution, dt, outcome, with, against, rates)
@@ -105,6 +105,14 @@ contains
     equations%now = solve
     call equations%timers%stop(timer)
   end subroutine add_misplaced
+
+  !> Values of all points are others, by more than a share of them; below 0 they stand for none.
+  pure function differ(with, against) result(yes)
+    real(wp), intent(in) :: with(:), against(:)   !! (npoint) conductances, or shares of radiation
+    logical :: yes
+
+    yes = sum(abs(with - against)) > negligible*sum(max(with, 0.0_wp) + max(against, 0.0_wp))
+  end function differ
 
   !> Forces move dies, or a section is free: errors of their places are not carried, so that those of gaps are not known.
   pure function free_beside_nodes(scene, equations) result(yes)

@@ -5,7 +5,9 @@
 !> with d the difference of a mesh twice as fine, bilinear in its elements, and T and d linear in time within the step, as kinetics
 !> take them (phase_step); from the states that were found so before. What they have more at the end than the states of the points
 !> is the error of these: propagation of errors by experimental perturbation (G. Dahlquist, A. Bjorck, Numerical Methods, 1974,
-!> sec. 2.2). The heat of transformation that they release more is not in d: released a step later, where martensite forms by a
+!> sec. 2.2). Temperatures stay within those that the run has had: d has swings beyond them where heat enters suddenly, which
+!> phases would remember. A hardness is none before 700 degC is passed (hardness): where one of both has none there is no error.
+!> The heat of transformation that they release more is not in d: released a step later, where martensite forms by a
 !> small change of the temperature, it makes d swing.
 module space_phases
   use equations, only: equations_t
@@ -14,10 +16,12 @@ module space_phases
   use heat_record, only: finer_share
   use kinds, only: wp
   use law_api, only: driver_temperature, heat_law
+  use phase_state, only: at_hardness, state_names
   use quadrature, only: square_rule
   use scene, only: scene_t
   use shape_functions, only: quad4, quad8_corner
   use solution, only: solution_t
+  use state_variables, only: find_variable
   implicit none
   private
   public :: follow_space_phases
@@ -58,6 +62,7 @@ contains
         temperatures(2, :npoint) = matmul(now(corners), of_mesh(:, :npoint)) &
                                    + finer_share*matmul(finer_now(nodes), of_finer(:, :npoint))
       end associate
+      temperatures = min(max(temperatures, solution%heat%coldest), solution%heat%hottest)
       call follow_element(scene, equations, g, fine%element(e), temperatures(:, :npoint), dt, solution)
     end do
   end subroutine follow_space_phases
@@ -72,8 +77,9 @@ contains
     type(solution_t), intent(inout) :: solution
     real(wp) :: given(max(1, size(equations%drivers(g)%value, 1)), 2), released, of_work, slope
     real(wp), dimension(size(solution%groups(g)%committed, 1)) :: start, end
-    integer :: p
+    integer :: p, hard
 
+    hard = scene%groups(g)%variables(find_variable(scene%groups(g)%variables, trim(state_names(at_hardness))))%first
     associate (material => scene%materials(scene%groups(g)%material), own => equations%drivers(g), state => solution%groups(g))
       associate (law => equations%laws(material%law_id))
         do p = 1, size(temperatures, 2)
@@ -82,6 +88,7 @@ contains
           given(driver_temperature, :) = temperatures(:, p)
           start = state%committed(:, p, e) + state%space_error(:, p, e)
           call law%release(material, dt, given, start, released, of_work, slope, end)
+          if (.not. (end(hard) > 0 .and. state%trial(hard, p, e) > 0)) end(hard) = state%trial(hard, p, e)
           state%space_error(:, p, e) = end - state%trial(:, p, e)
         end do
       end associate

@@ -250,6 +250,21 @@ def steels(checks):
             with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
                 means.append(json.load(file)["accuracy"]["heat_space"]["fraction_mean"])
         checks.that(abs(means[1]/means[0] - 1) < 0.01, "in two operations the same", means)
+        # before 700 degC are passed there is no hardness, nor an error of it
+        _, hot = run_of(checks, "hot", STEEL, {**numbers, "n": 8}, {**times, "stop": 20.})
+        error = hot["accuracy"]["heat_space"].get("hardness", 0.)
+        checks.that(error < 50, "a part that is hot in places has no error of hardness there", error)
+    heated(checks)
+
+
+def heated(checks):
+    """A plate of martensite that is only heated: temperatures without their error stay within those of the run, so nothing forms by cold."""
+    text = STEEL.format(grade="aisi4140", half=10., h=1000., state="PLSTN", n=4, folder=os.path.join(SOURCE, "decks", "jominy"))
+    text = text.replace("START T 850.", "START T 20.\nSTART PHASES AUSTENITE 0.2 MARTENSITE 0.8").replace("TS 20.", "TS 700.")
+    run = Run(checks, "heated", text + TIMES.format(tol=0.5, first=1e-4, longest=1., stop=0.5, save=1000))
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+        told = json.load(file)["accuracy"]["heat_space"]
+    checks.that(told["largest"] > 50 and told.get("fraction", 0.) < 1e-3, "a plate that is heated: phases do not err", told)
 
 
 def main():

@@ -10,7 +10,7 @@ from .words import brief
 ROWS: List[Tuple[str, str, Dict[str, str]]] = [
     ("space", "in space", {"stress_pct": "stress {} %", "strain_pct": "strain {} %"}),
     ("heat_space", "in space, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "mean_largest": "{} in the mean square",
-                                             "fraction": "phases by it {} at most", "fraction_mean": "{} in the mean square", "hardness": "hardness {} HV at most"}),
+                                             "fraction": "a phase by these temperatures {} at most", "fraction_mean": "{} in the mean square", "hardness": "hardness {} HV at most"}),
     ("path", "in time, by the path within steps", {"motion_pct": "motion {} % in sum", "stress_pct": "stress {} % at the end"}),
     ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "stress_pct": "stress {} %", "work_not_heat": "{} behind the work (SOLVE)"}),
     ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
