@@ -95,9 +95,7 @@ contains
   end function next_time
 
   !> Proposal after an accepted step: by its iterations, and no longer than its strain increment and its error in time allow
-  !> to foresee. A step shortened to hit a time, or for what happens within it, does not shorten the proposal: its iterations come
-  !> of that, not of its length, and if they are many the proposal is multiplied by the factor, not the length of this step. Where
-  !> the travel of dies may have shortened it, they do come of its length.
+  !> to foresee. A step shortened to hit a time does not shorten the proposal.
   pure function after_success(scene, dt, proposed, iterations, strain, growth, added) result(next)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt, proposed
@@ -114,8 +112,7 @@ contains
       factor = (real(s%nopti, wp)/counted)**(1/s%nalpha)
       factor = min(max(factor, s%dminmu), s%dmaxmu)
       next = dt*factor
-      if (dt < proposed .and. (factor >= 1 .or. .not. s%travel_bound > 0)) &
-        next = max(next, min(factor, 1.0_wp)*min(proposed, s%largest_step))
+      if (dt < proposed .and. factor >= 1) next = max(next, min(proposed, s%largest_step))
       if (strain*next > foresight*s%strain_bound*dt) next = foresight*s%strain_bound/strain*dt
       if (present(growth)) next = min(next, min(growth, s%largest_step/dt)*dt)
       next = min(max(next, s%least_step), s%largest_step)
