@@ -62,7 +62,7 @@ contains
         temperatures(2, :npoint) = matmul(now(corners), of_mesh(:, :npoint)) &
                                    + finer_share*matmul(finer_now(nodes), of_finer(:, :npoint))
       end associate
-      temperatures = min(max(temperatures, solution%heat%coldest), solution%heat%hottest)
+      temperatures(:, :npoint) = min(max(temperatures(:, :npoint), solution%heat%coldest), solution%heat%hottest)
       call follow_element(scene, equations, g, fine%element(e), temperatures(:, :npoint), dt, solution)
     end do
   end subroutine follow_space_phases
