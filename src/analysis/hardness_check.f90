@@ -9,7 +9,7 @@ module hardness_check
   use steels, only: austenite, first_diffusive, kinetics_none, last_diffusive, martensite, phase_count, phase_names, &
                     prop_hardness, steel_t
   use temperature_curves, only: is_given
-  use text, only: add => add_text, string_t
+  use text, only: add_new_text, string_t
   implicit none
   private
   public :: judge_hardness, words_of_range
@@ -29,7 +29,7 @@ contains
         if (.not. keeps_hardness(scene, group)) cycle
         if (told(group%material)) cycle
         told(group%material) = .true.
-        call add_words(words_of_range(scene%materials(group%material)%steel), warnings)
+        call add_new_text(warnings, words_of_range(scene%materials(group%material)%steel))
       end associate
     end do
     told = .false.
@@ -41,24 +41,11 @@ contains
           if (told(group%material)) cycle
           if (probe%component /= group%variables(find_variable(group%variables, trim(state_names(at_hardness))))%first) cycle
           told(group%material) = .true.
-          call add_words(words_of_probe(probe%name, group, scene%materials(group%material)%steel), warnings)
+          call add_new_text(warnings, words_of_probe(probe%name, group, scene%materials(group%material)%steel))
         end associate
       end associate
     end do
   end subroutine judge_hardness
-
-  !> Add words, if any: of two laws of one steel once.
-  subroutine add_words(words, warnings)
-    character(len=*), intent(in) :: words
-    type(string_t), allocatable, intent(inout) :: warnings(:)
-    integer :: k
-
-    if (words == '') return
-    do k = 1, size(warnings)
-      if (warnings(k)%s == words) return
-    end do
-    call add(warnings, words)
-  end subroutine add_words
 
   !> The state of a group of a steel has a hardness.
   pure function keeps_hardness(scene, group) result(yes)

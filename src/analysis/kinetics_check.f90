@@ -3,7 +3,7 @@ module kinetics_check
   use li_range, only: beyond_li
   use scene, only: scene_t
   use steels, only: kinetics_li, steel_t
-  use text, only: add_text, string_t
+  use text, only: add_new_text, string_t
   implicit none
   private
   public :: judge_kinetics, words_of_li
@@ -14,18 +14,10 @@ contains
   subroutine judge_kinetics(scene, warnings)
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(inout) :: warnings(:)
-    character(len=:), allocatable :: words
-    logical :: told
-    integer :: m, k
+    integer :: m
 
     do m = 1, size(scene%materials)
-      if (.not. allocated(scene%materials(m)%steel)) cycle
-      words = words_of_li(scene%materials(m)%steel)
-      told = words == ''
-      do k = 1, size(warnings)
-        told = told .or. warnings(k)%s == words
-      end do
-      if (.not. told) call add_text(warnings, words)
+      if (allocated(scene%materials(m)%steel)) call add_new_text(warnings, words_of_li(scene%materials(m)%steel))
     end do
   end subroutine judge_kinetics
 

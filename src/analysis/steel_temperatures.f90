@@ -5,7 +5,7 @@ module steel_temperatures
   use steels, only: bainite, celsius_zero, el_c, el_cr, el_mn, el_mo, el_ni, el_si, first_diffusive, kinetics_none, &
                     last_diffusive, phase_names, steel_t, unknown_temperature
   use temperature_curves, only: curve_none, temperature_curve_t
-  use text, only: add => add_text, string_t, to_text
+  use text, only: add_new_text, string_t, to_text
   implicit none
   private
   public :: judge_steel_temperatures, words_of_temperatures
@@ -27,18 +27,10 @@ contains
   subroutine judge_steel_temperatures(scene, warnings)
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
-    character(len=:), allocatable :: words
-    logical :: told
-    integer :: m, k
+    integer :: m
 
     do m = 1, size(scene%materials)
-      if (.not. allocated(scene%materials(m)%steel)) cycle
-      words = words_of_temperatures(scene%materials(m)%steel)
-      told = words == ''
-      do k = 1, size(warnings)
-        told = told .or. warnings(k)%s == words
-      end do
-      if (.not. told) call add(warnings, words)
+      if (allocated(scene%materials(m)%steel)) call add_new_text(warnings, words_of_temperatures(scene%materials(m)%steel))
     end do
   end subroutine judge_steel_temperatures
 

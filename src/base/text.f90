@@ -4,7 +4,7 @@ module text
   use kinds, only: i8, wp
   implicit none
   private
-  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, padded, percent, two_digits, add_text
+  public :: string_t, to_text, upper_case, nearest_word, edit_distance, join, padded, percent, two_digits, add_text, add_new_text
 
   !> A text of its own length, so that arrays of words need no padding.
   type :: string_t
@@ -124,6 +124,19 @@ contains
     item%s = s
     list = [list, item]
   end subroutine add_text
+
+  !> The same of a text that is not empty and not in the list yet.
+  pure subroutine add_new_text(list, s)
+    type(string_t), allocatable, intent(inout) :: list(:)   !! (n)
+    character(len=*), intent(in) :: s
+    integer :: k
+
+    if (s == '') return
+    do k = 1, size(list)
+      if (list(k)%s == s) return
+    end do
+    call add_text(list, s)
+  end subroutine add_new_text
 
   !> The known word closest to `word`, or '' when none is close enough to be a typing error; of words equally close the one that
   !> begins as it does.

@@ -11,7 +11,7 @@
 !> T. Belytschko, Int. J. Num. Meth. Engng 37 (1994) 517-536 (blending).
 module patch_recovery
   use kinds, only: wp
-  use row_polynomials, only: fit_row
+  use row_polynomials, only: fit_row, scatter_of
   use vertex_patches, only: patches_t
   implicit none
   private
@@ -182,10 +182,7 @@ contains
     real(wp) :: mean(2), spread_of(2), slope, gram(nterm, nterm), t(nterm), diagonal
     integer :: j, k
 
-    mean = sum(points, 1)/size(points, 1)
-    spread_of(1) = sqrt(sum((points(:, 1) - mean(1))**2)/size(points, 1))
-    slope = sum((points(:, 1) - mean(1))*(points(:, 2) - mean(2)))/(size(points, 1)*spread_of(1)**2)
-    spread_of(2) = sqrt(sum((points(:, 2) - mean(2) - slope*(points(:, 1) - mean(1)))**2)/size(points, 1))
+    call scatter_of(points, mean, spread_of, slope)
     gram = 0
     do k = 1, size(points, 1)
       t(:2) = points(k, :) - mean

@@ -9,7 +9,7 @@ module row_polynomials
   use kinds, only: wp
   implicit none
   private
-  public :: fit_row
+  public :: fit_row, scatter_of
 
   !> Terms of the polynomials, 1, x, y, x^2, x y, y^2, those of the first degree, and those of the second.
   integer, parameter :: nterm = 6, nlinear = 3, nsquare = 3
@@ -71,13 +71,8 @@ contains
     real(wp), intent(in) :: points(:, :)             !! (npoint, 2) [scale]
     real(wp), intent(out) :: to_even(nterm, nterm)   !! (even term, term)
     real(wp) :: mean(2), spread_of(2), slope, a(3), b(3)
-    integer :: n
 
-    n = size(points, 1)
-    mean = sum(points, 1)/n
-    spread_of(1) = sqrt(sum((points(:, 1) - mean(1))**2)/n)
-    slope = sum((points(:, 1) - mean(1))*(points(:, 2) - mean(2)))/(n*spread_of(1)**2)
-    spread_of(2) = sqrt(sum((points(:, 2) - mean(2) - slope*(points(:, 1) - mean(1)))**2)/n)
+    call scatter_of(points, mean, spread_of, slope)
     a = [-mean(1), 1.0_wp, 0.0_wp]/spread_of(1)
     b = [slope*mean(1) - mean(2), -slope, 1.0_wp]/spread_of(2)
     to_even = 0
@@ -88,6 +83,20 @@ contains
     to_even(5, :) = sqrt(2.0_wp)*product_of(a, b)
     to_even(6, :) = product_of(b, b)
   end subroutine even_terms
+
+  !> Middle of points, how far they scatter along x, and along y beside the line of this slope through the middle.
+  pure subroutine scatter_of(points, mean, spread_of, slope)
+    real(wp), intent(in) :: points(:, :)                !! (npoint, 2) that do not lie on a line [scale]
+    real(wp), intent(out) :: mean(2), spread_of(2)      !! [scale]
+    real(wp), intent(out) :: slope                      !! [-]
+    integer :: n
+
+    n = size(points, 1)
+    mean = sum(points, 1)/n
+    spread_of(1) = sqrt(sum((points(:, 1) - mean(1))**2)/n)
+    slope = sum((points(:, 1) - mean(1))*(points(:, 2) - mean(2)))/(n*spread_of(1)**2)
+    spread_of(2) = sqrt(sum((points(:, 2) - mean(2) - slope*(points(:, 1) - mean(1)))**2)/n)
+  end subroutine scatter_of
 
   !> The product of two linear functions of 1, x, y.
   pure function product_of(a, b) result(c)

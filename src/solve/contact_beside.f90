@@ -24,7 +24,7 @@ module contact_beside
   use timers, only: ledger_t
   implicit none
   private
-  public :: anything_rests, balance, contact_from
+  public :: balance, contact_from, find_resting
 
   !> What is left of the forces along the motion, over what they were, that is little enough; most attempts, each of which takes the
   !> bounds of the share together by this much at least.
@@ -163,18 +163,18 @@ contains
 
   end subroutine balance
 
-  !> There is a body that nothing presses at either end of the step: only its drag resists.
-  function anything_rests(scene, equations, solution, dt, other) result(yes)
+  !> Bodies that nothing presses at either end of the step: only their drag resists.
+  subroutine find_resting(scene, equations, solution, dt, other, resting)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt                 !! [time]
     type(solution_t), intent(inout) :: other   !! a copy of the solution
-    logical :: yes
+    logical, intent(out) :: resting(0:)        !! (0:nnode) by the number of the body (find_loose_bodies)
     logical :: pressed(0:size(equations%loose))
     integer :: g, k, c
 
-    yes = .false.
+    resting = .false.
     if (.not. any(equations%drag > 0)) return
     do g = 1, size(other%groups)
       other%groups(g)%committed = solution%groups(g)%trial
@@ -185,12 +185,14 @@ contains
     end do
     associate (number => equations%dofs%fields(displacement_field)%number)
       do k = 1, size(equations%loose)
-        if (equations%loose(k) == 0 .or. pressed(equations%loose(k))) cycle
-        do c = 1, size(number, 1)
-          if (number(c, k) > 0) yes = yes .or. equations%drag(number(c, k)) > 0
-        end do
+        associate (body => equations%loose(k))
+          if (body == 0 .or. pressed(body)) cycle
+          do c = 1, size(number, 1)
+            if (number(c, k) > 0) resting(body) = resting(body) .or. equations%drag(number(c, k)) > 0
+          end do
+        end associate
       end do
     end associate
-  end function anything_rests
+  end subroutine find_resting
 
 end module contact_beside

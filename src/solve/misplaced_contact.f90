@@ -15,7 +15,8 @@
 module misplaced_contact
   use contact_conductance, only: conductance_count, conductance_of_solution, hand_over
   use contact_lag, only: add_rates
-  use contact_beside, only: anything_rests, balance, contact_from
+  use contact_beside, only: balance, contact_from, find_resting
+  use dies, only: is_deformable
   use drivers, only: at_pressure, at_status
   use equations, only: equations_t, take_turn
   use fields, only: displacement_field, find_field
@@ -55,7 +56,7 @@ contains
     type(solution_t) :: other
     real(wp), dimension(equations%dofs%ndof) :: rates, force, with_errors, against_errors
     integer :: solve, timer, g
-    logical :: done, balanced, rests
+    logical :: done, balanced, resting(0:size(equations%loose)), keeps(size(scene%groups))
 
     if (.not. (outcome%converged .and. outcome%heat%estimated .and. scene%follows_path)) return
     if (conductance_count(equations%drivers) == 0 .or. free_beside_nodes(scene, equations)) return
@@ -74,16 +75,17 @@ contains
     call take_turn(equations, displacement_field)
     other = solution
     call contact_from(scene, equations, solution, dt, outcome%du, 0*errors, other, done, force)
-    rests = anything_rests(scene, equations, solution, dt, other)
-    if (rests) call remove_rigid_motion(scene, equations, solution, errors)
+    call find_resting(scene, equations, solution, dt, other, resting)
+    if (any(resting)) call remove_rigid_motion(scene, equations, solution, errors, resting)
+    keeps = keeps_pressures(scene, equations, resting)
     with_errors = errors
     against_errors = -errors
     allocate (now(conductance_count(equations%drivers)))
     allocate (with, against, mold=now)
     call conductance_of_solution(scene, solution, equations%drivers, now)
     balanced = done .and. at_hand
-    call conductance_from(scene, equations, solution, dt, force, balanced, rests, outcome, with_errors, other, with, done)
-    if (done) call conductance_from(scene, equations, solution, dt, force, balanced, rests, outcome, against_errors, other, &
+    call conductance_from(scene, equations, solution, dt, force, balanced, keeps, outcome, with_errors, other, with, done)
+    if (done) call conductance_from(scene, equations, solution, dt, force, balanced, keeps, outcome, against_errors, other, &
                                     against, done)
     if (done) then
       if (balanced) outcome%path%error = on_nodes(equations, 0.5_wp*(with_errors - against_errors))
@@ -105,6 +107,26 @@ contains
     equations%now = solve
     call equations%timers%stop(timer)
   end subroutine add_misplaced
+
+  !> Contacts by which heat passes from or to a body that rests (ngroup): where it lies does not count.
+  pure function keeps_pressures(scene, equations, resting) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical, intent(in) :: resting(0:)   !! (0:nnode) by the number of the body
+    logical :: yes(size(scene%groups))
+    integer :: g
+
+    yes = .false.
+    if (.not. any(resting)) return
+    do g = 1, size(yes)
+      if (.not. equations%drivers(g)%is_of_heat_contact) cycle
+      associate (group => scene%groups(g))
+        if (size(group%connectivity) > 0) yes(g) = resting(equations%loose(group%connectivity(1, 1)))
+        if (group%die == 0) cycle
+        if (is_deformable(scene%dies(group%die))) yes(g) = yes(g) .or. resting(equations%loose(scene%dies(group%die)%nodes(1, 1)))
+      end associate
+    end do
+  end function keeps_pressures
 
   !> Values of all points are others, by more than a share of them; below 0 they stand for none.
   pure function differ(with, against) result(yes)
@@ -148,14 +170,14 @@ contains
   end function is_free
 
   !> Conductances of contact from other places, by the pressures there or, where these cannot be balanced, those of the step.
-  subroutine conductance_from(scene, equations, solution, dt, force, balanced, rests, outcome, apart, other, values, done)
+  subroutine conductance_from(scene, equations, solution, dt, force, balanced, keeps, outcome, apart, other, values, done)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: dt                !! [time]
     real(wp), intent(in) :: force(:)          !! (ndof) of contact in the step [residual]
     logical, intent(in) :: balanced           !! errors are balanced, by factors at hand
-    logical, intent(in) :: rests              !! nothing presses a body
+    logical, intent(in) :: keeps(:)           !! (ngroup) pressures stay those of the step
     type(outcome_t), intent(inout) :: outcome
     real(wp), intent(inout) :: apart(:)       !! (ndof) errors of places [unknown]
     type(solution_t), intent(inout) :: other  !! a copy of the solution
@@ -170,7 +192,7 @@ contains
     end if
     if (.not. done) return
     do g = 1, size(scene%groups)
-      if ((balanced .and. .not. rests) .or. .not. equations%drivers(g)%is_of_heat_contact) cycle
+      if ((balanced .and. .not. keeps(g)) .or. .not. equations%drivers(g)%is_of_heat_contact) cycle
       associate (host => scene%groups(g)%host, source => equations%drivers(g)%source)
         associate (status => source(at_status)%row(host), pressure => source(at_pressure)%row(host), &
                    now => solution%groups(host)%trial)

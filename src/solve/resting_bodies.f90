@@ -81,11 +81,12 @@ contains
   !> Take the rigid motions of bodies that only their drag resists out of a motion that answers forces which balance each other: but
   !> for round-off these forces move no body as a whole, and against the drag round-off is a large motion. The strain stays. Rigid
   !> motions are those that no support bars: translations and, in the plane, the turn.
-  subroutine remove_rigid_motion(scene, equations, solution, motion)
+  subroutine remove_rigid_motion(scene, equations, solution, motion, bodies)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
-    real(wp), intent(inout) :: motion(:)   !! (ndof) [unknown]
+    real(wp), intent(inout) :: motion(:)          !! (ndof) [unknown]
+    logical, intent(in), optional :: bodies(0:)   !! (0:nnode) those it is taken out of, by their numbers; all if not given
     real(wp) :: x(2, size(equations%loose)), rigid(size(motion))
     logical :: barred(2)
     integer :: b, c
@@ -95,6 +96,9 @@ contains
     if (.not. any(equations%drag > 0)) return
     x = present_coordinates(scene, solution)
     do b = 1, maxval(equations%loose)
+      if (present(bodies)) then
+        if (.not. bodies(b)) cycle
+      end if
       do c = 1, 2
         call find_rigid(c, barred(c))
         if (.not. barred(c)) call take_out()

@@ -274,6 +274,22 @@ PROBE  m MEAN martensite strip/PL8TM
 END
 """
 
+# A block that lies loose on a plate of its own.
+LOOSE = (("START  T 800.", """BLOCK  cube PL8LS 4 plain
+   100. 0.   110. 0.   110. 4.   100. 4.
+   6 1.   2 1.
+LAW    plain ELA
+   200000. 0.3
+ADDEL  cube PL8TM bulk BILINEAR
+LAW    bulk HEAT
+   30. 4.5
+"""), ("CNT2D  strip 1", "DIE    plate\n   SEGM   90. 0.   120. 0.\n"), ("TDIE   low", "CNT2D  cube 1 plate film\n"),
+         ("LIC    down", """TDIE   plate T 60.
+COU2DC cube 1 plate H 3. HO 0.1 REACH 3.
+   PRESS 0. 0.1 10. 1.
+   GAP 0. 0.1 0.3 0.02
+"""))
+
 
 def lost(checks):
     """Errors of places of a body that hardly touches anything."""
@@ -295,6 +311,14 @@ def pressed(checks):
     if long.ok and fine.ok:
         true, told = square_mean(long, fine, ring=False), told_at_end(long)
         checks.that(0.4 < told/true < 5, "pressed: error in time that is told, over that of the temperatures", (told, true, told/true))
+    # what rests elsewhere takes nothing from what is told
+    deck = LOST.format(step=0.1, end=2)
+    for before, cards in LOOSE:
+        deck = deck.replace(before, cards + before, 1)
+    beside = Run(checks, "pressed-beside", deck)
+    if long.ok and beside.ok:
+        ratio = told_at_end(beside)/told_at_end(long)
+        checks.that(0.5 < ratio < 2, "pressed: with a loose block elsewhere, over what is told without", ratio)
 
 
 def skin(checks):
