@@ -11,10 +11,10 @@ module own_closest_point
   use curve_search, only: closest_opposed_point, follow_closest_point, looks_at
   use dies, only: die_t
   use kept_side, only: beyond_all
-  use kinds, only: wp
+  use kinds, only: pi, wp
   use parabolas, only: point_on, tangent_on
   use piecewise_curves, only: adjacent_piece
-  use plane_vectors, only: cross, right_of
+  use plane_vectors, only: angle_between, cross, right_of
   use scene, only: group_t, scene_t
   use side_points, only: contact_point_t, touching
   use vectors, only: length_of
@@ -149,22 +149,28 @@ contains
   end function is_wall
 
   !> The side of the point and the one that it shares a node with have a slot between them, the ground of a fold, and no corner of
-  !> the body: by their chords, since parabolas that press on each other may bulge beside that node. A slot that is shut may have
-  !> turned over by the depth of contact.
+  !> the body: by their chords, since parabolas that press on each other may bulge beside that node, and by their tangents, since
+  !> parabolas that turn back from their chords make a corner of the body there. A slot that is shut may have turned over by the
+  !> depth of contact.
   pure function is_slot(die, at_end, found) result(slot)
     type(die_t), intent(in) :: die
     logical, intent(in) :: at_end   !! the node is the last one of the side
     integer, intent(in) :: found    !! piece with the closest point
     logical :: slot
-    real(wp) :: before(2), after(2)
-    integer :: piece
+    real(wp), dimension(2) :: before, after   ! from the node along the chords
+    real(wp) :: opening                       ! between the tangents there [radian]
+    integer :: first, next
 
-    piece = found
-    if (.not. at_end) piece = adjacent_piece(die, found, -1)
-    before = die%pieces(:, 3, piece) - die%pieces(:, 1, piece)
-    piece = adjacent_piece(die, piece, 1)
-    after = die%pieces(:, 3, piece) - die%pieces(:, 1, piece)
-    slot = cross(before, after) > 0 .or. dot_product(before, after) < -shut*length_of(before)*length_of(after)
+    first = found
+    if (.not. at_end) first = adjacent_piece(die, found, -1)
+    next = adjacent_piece(die, first, 1)
+    before = die%pieces(:, 1, first) - die%pieces(:, 3, first)
+    after = die%pieces(:, 3, next) - die%pieces(:, 1, next)
+    slot = cross(after, before) > 0 .or. dot_product(after, before) > shut*length_of(before)*length_of(after)
+    if (.not. slot) return
+    opening = angle_between(tangent_on(die%pieces(:, :, next), -1.0_wp), after) + angle_between(after, before) &
+              + angle_between(before, -tangent_on(die%pieces(:, :, first), 1.0_wp))
+    slot = opening < pi
   end function is_slot
 
 end module own_closest_point

@@ -12,8 +12,8 @@ module linear_solver
   use vectors, only: length_of
   implicit none
   private
-  public :: linear_solver_t, choose_solver, analyse, factorise, solve_linear, solve_unrefined, invert_at, negative_pivots, &
-            release, return_to_chosen, use_working_precision
+  public :: linear_solver_t, choose_solver, analyse, factorise, has_factors, solve_linear, solve_unrefined, invert_at, &
+            negative_pivots, release, return_to_chosen, use_working_precision
 
   !> Backward error of a solve that is accepted at last.
   real(wp), parameter, public :: linear_tolerance = 1.0e-10_wp
@@ -160,6 +160,14 @@ contains
     end do
     same = .true.
   end function same_bits
+
+  !> A matrix of the present pattern was factorised.
+  pure function has_factors(solver) result(has)
+    type(linear_solver_t), intent(in) :: solver
+    logical :: has
+
+    has = solver%made_by > 0
+  end function has_factors
 
   !> Solve for one right-hand side with the present factors, refining while the residual is too large.
   !> Factors that prove too poor are made again by the fallback, for the rest of the step. It is a mistake of the program to ask for

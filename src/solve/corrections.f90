@@ -5,7 +5,7 @@ module corrections
   use errors, only: error_t, exit_no_convergence
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
-  use linear_solver, only: factorise, solve_linear
+  use linear_solver, only: factorise, has_factors, solve_linear
   use loose_bodies, only: hold_loose, motion_of_loose
   use resting_dies, only: hold_free_dies
   use solves, only: solve_t
@@ -38,7 +38,8 @@ contains
         if (solve%equation(d) > 0) rhs(solve%equation(d)) = residual(d)
       end do
       factors = .false.
-      if (present(at_hand)) factors = at_hand
+      ! contact that met other pieces in the last iteration has other unknowns: factors went with their pattern
+      if (present(at_hand)) factors = at_hand .and. has_factors(solve%solver)
       if (.not. factors) then
         if (solve%own(pilot_field)) &
           call hold_free_dies(equations%dofs, residual, equations%seated, equations%size, solve, equations%slides)

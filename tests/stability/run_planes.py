@@ -106,6 +106,8 @@ CASES = [("pore", PORE, {"unit": 1, "travel": 3.5}, ("right 4", "top 4"), (0, 1)
          ("waist", WAIST, {"state": "PLSTN", "width": 9, "travel": 4, "mu": 0.2}, ("b 2",), (1,)),
          ("waist-round", WAIST, {"state": "AXISYM", "width": 9, "travel": 4, "mu": 0.2}, ("b 2",), (1,)),
          ("groove", GROOVE, {"travel": 1.5, "mu": 0.3}, ("right 1",), (1,))]
+# Elements along an eighth of the hole, and across the plate.
+COARSE = ((4, 3), (5, 3), (6, 3), (6, 4))
 # Depth over side of the code before, which ended with 0 all the same.
 BEFORE = {"pore": 5.86, "pore-coarse": 3.87, "pore-SI": 5.86, "waist": 0.85, "waist-round": 0.30, "groove": 1.52}
 
@@ -171,6 +173,21 @@ def whole_plate(checks):
     # both save every so many steps of their own: what the hole is left with at the end, over what it began with
     checks.that(areas[0][0] > 3 and areas[0][-1] < 0.02*areas[0][0], "whole plate: the hole of the quarter closes", areas[0])
     checks.small(abs(areas[0][-1] - areas[1][-1])/areas[0][0], SAME, "whole plate: area of the hole")
+
+
+def coarse_wholes(checks):
+    """The same on coarse meshes, whose sides turn back from their chords at the ends of the hole: a corner of the body, no contact."""
+    for n, m in COARSE:
+        numbers = {"unit": 1, "travel": 2.1, "n": n, "m": m}
+        quarter, run = Run(checks, f"quarter-{n}-{m}", deck(PORE, numbers)), Run(checks, f"whole-{n}-{m}", whole(numbers))
+        if quarter.ok and run.ok:
+            for name, factor in ("force_y_upper", 2), ("external_work", 4):
+                checks.small(abs(run.history[name][-1]/quarter.history[name][-1]/factor - 1), 1e-3, f"whole plate, {n} x {m}: {name}")
+
+
+def met_anew(checks):
+    """Sides of the hole that meet others in the last correction of a step: its errors are found with the matrix of these."""
+    Run(checks, "met-anew", whole({"unit": 1, "travel": 3.5, "n": 6, "m": 8}).replace("1. -3.5", "0.43 -1.505"))
 
 
 def whole(numbers):
@@ -279,6 +296,8 @@ def main():
     checks = Checks()
     folds(checks)
     whole_plate(checks)
+    coarse_wholes(checks)
+    met_anew(checks)
     resumed(checks)
     no_walls(checks)
     operations(checks)
