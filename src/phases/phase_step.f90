@@ -200,8 +200,8 @@ contains
 
   !> Cooling through 700 degC at the rate of the step: that of the phases that form from the austenite there, or, where none is
   !> left, that have formed from it above (the point has not been colder since it was heated to Ac1). What was there already has
-  !> formed at another one: of Maynier's hardness, linear in the logarithm of the rate, the mean by amounts counts. Of a mixture that
-  !> the deck gives no rate is known: it counts as formed at the same one, if any forms.
+  !> formed at another one: of Maynier's hardness, linear in the logarithm of the rate, the mean by amounts counts. Of a mixture
+  !> that the deck gives no rate is known: it counts as formed at the same one, if any forms.
   pure subroutine pass_rate(dt, before, now, committed, rate)
     real(wp), intent(in) :: dt, before, now     !! [s], temperatures of the step [degC]
     real(wp), intent(in) :: committed(:)        !! (state_size) at its start [state_units]
