@@ -18,6 +18,7 @@ module heat_check
   use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
   use solution, only: start_fields
   use state_variables, only: find_variable
+  use sheet_sources, only: judge_sheet_sources
   use steel_numbers, only: judge_steel_numbers
   use steel_temperatures, only: judge_steel_temperatures
   use steel_units, only: judge_units
@@ -67,6 +68,7 @@ contains
     call judge_kinetics(scene, warnings)
     call judge_steel_temperatures(scene, warnings)
     call judge_steel_numbers(scene, warnings)
+    call judge_sheet_sources(scene, laws, warnings)
     call judge_hardness(scene, warnings)
     call judge_cycle_heat(scene, laws, warnings)
     if (scene%fields(displacement_field)%declared) return

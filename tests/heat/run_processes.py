@@ -437,6 +437,14 @@ def told(checks):
         if run.ok:
             lines = [line["text"] for line in summary(run)["warnings"] if "no austenite" in line["text"] or "boils" in line["text"]]
             checks.that(len(lines) == (words != "") and all(words in line for line in lines), f"{run.name}: told", lines)
+    # heat of a change of volume in plane stress
+    for state, source, words in (("PLSTS", 1207.5, True), ("PLSTN", 1207.5, False), ("PLSTS", 0., False)):
+        run = Run(checks, f"sheet-{state}-{source:g}", f"TITLE sheet\nSTATE {state}\nKINEM SMALL\nBLOCK bar PL8LS 4 s\n   0. 0.   4. 0.   4. 4.   0. 4.\n   2 1.   2 1.\n"
+                  f"LAW s ELATH\n   70000. 0.3 23.E-6\nADDEL bar PL8TM h BILINEAR\nLAW h HEAT\n   200. 2.4\n   SOURCE {source}\nSTART T 300.\nFIXED bar 1 Y\nFIXED bar 4 X\n"
+                  "TRACT bar 3 Y 200. up\nLIC up\n   0. 0. 1. 1.\nSOLVE CONVERGE\nSTRAT 0.5 1.E-5 0.5 4 3\nPROBE t MEAN T bar\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"] if "the change of the area" in line["text"]]
+            checks.that(len(lines) == words and all(line.startswith("LAW h: ") for line in lines), f"{run.name}: told", lines)
     # a torch by its card
     run = Run(checks, "torches", "TITLE torches\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   40. 0.   40. 20.   0. 20.\n   20 1.   10 1.\n"
               "LAW hot HEAT\n   30. 4.5\nSTART T 20.\nGOLDAK bar P 2.E6 ETA 0.8 FRONT 3. REAR 6. WIDTH 4. DEPTH 4. INTO 0. -1. CROSS 8. 3.\n   0. 20. 20.\n"
