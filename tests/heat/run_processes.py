@@ -214,6 +214,8 @@ def pressed(checks):
         # 24 before, the shortest step 1e-6
         checks.that(last(run, "cutbacks") <= 3, "pressed: no step is caught", last(run, "cutbacks"))
         checks.small(abs(last(run, "force_y_upper")/2e5 - 1), 1e-6, "pressed: the force is borne")
+        checks.that(summary(run)["accuracy"]["heat"].get("contact_places_known") is False, "pressed: errors of where contact stands are not among those told",
+                    summary(run)["accuracy"]["heat"])
     tips = []
     # cold before it is pushed, or pushed before it is cold
     for name, heat, motion in (("cools", "0. 600.   1. 600.   2. 20.", "FORCE POINT 0. 6. Y -25. push\nLIC push\n   0. 0.   1. 1.\n"),
