@@ -1,6 +1,6 @@
-!> Heat of a change of volume (SOURCE) in plane stress, where the strain across the plane is none of the motion of the nodes: what is
-!> counted is the change of the area. Of an elastic body that is (1 - NU)/(1 - 2 NU) times the change of volume, of one that flows,
-!> and keeps its volume, all of the strain in the plane.
+!> Heat of a change of volume (SOURCE) in plane stress, where the strain across the plane is none of the motion of the nodes: what
+!> is counted is the change of the area. Of an elastic body that is (1 - NU)/(1 - 2 NU) times the change of volume, of one that
+!> flows, and keeps its volume, all of the strain in the plane.
 module sheet_sources
   use kinds, only: wp
   use law_api, only: find_parameter, heat_law, law_t, solid_law
