@@ -1,6 +1,6 @@
 !> Temperatures below absolute zero: more heat is taken than there is, as by a flux of the wrong sign or beyond its time. What a run
 !> makes of it is no result, and laws of phases have no answer. Where cards say what absolute zero is in the deck the run stops;
-!> others are warned of what is below that of any scale.
+!> others are warned of what is below that of any scale. So they are of what is hotter than where any metal boils.
 module absolute_cold
   use errors, only: error_t, exit_no_convergence, fail
   use fields, only: field_t, find_field
@@ -13,12 +13,15 @@ module absolute_cold
   use text, only: add_text, string_t, to_text
   implicit none
   private
-  public :: refuse_absolute_cold, warn_of_absolute_cold
+  public :: refuse_absolute_cold, warn_of_absolute_cold, warn_of_vapour
 
   !> Of freezing water [K].
   real(wp), parameter :: freezing = 273.15_wp
   !> Absolute zero in the scale in which it has the lowest number, degrees Fahrenheit.
   real(wp), parameter :: lowest_of_scales = -459.67_wp
+  !> Where tungsten and rhenium boil, the last of all metals, 5930 degC or less (CRC Handbook of Chemistry and Physics), in degrees
+  !> Fahrenheit, the scale of the highest numbers.
+  real(wp), parameter :: all_boil = 1.1e4_wp
   !> Beside surroundings of 0 K temperatures of second order in the element may be below it by so much [temperature].
   real(wp), parameter :: slack = 1.0_wp
 
@@ -57,6 +60,23 @@ contains
     if (len(words) > 0) &
       call add_text(warnings, 'the temperature is '//words//' at the end, below absolute zero of any scale: '//advice)
   end subroutine warn_of_absolute_cold
+
+  !> A warning where the run has been hotter than where any metal boils.
+  subroutine warn_of_vapour(scene, solution, warnings)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+    real(wp) :: hottest
+    integer :: f
+
+    f = find_field(scene%fields, temperature_field)
+    if (f == 0) return
+    if (.not. scene%fields(f)%declared) return
+    hottest = maxval(solution%fields(f)%value(1, :))
+    if (solution%heat%space_steps > 0) hottest = max(hottest, solution%heat%hottest)
+    if (hottest > all_boil) call add_text(warnings, 'the temperature has been up to '//to_text(hottest, 4) &
+      //', hotter than where any metal boils: power, flux or work in other units than heat capacities')
+  end subroutine warn_of_vapour
 
   !> The coldest node and its place, nothing where it is no colder than a temperature, or temperatures are not solved for.
   function colder_than(scene, solution, temperature) result(words)

@@ -25,6 +25,7 @@ module closing_facts
   use heat_books, only: has_heat
   use kinds, only: wp
   use path_record, only: motion_error, stress_error, whole_stress_error
+  use misplaced_contact, only: leaves_places_out
   use pending_heat, only: pending_temperature
   use phases_in_space, only: errors_of_phases, phase_errors_t
   use remeshing, only: stress_error_of_all
@@ -67,6 +68,8 @@ module closing_facts
     type(phase_errors_t) :: phases
     !> What the plastic work of the last step would warm the bodies by that has not become heat (SOLVE ONCE) [temperature].
     real(wp) :: heat_due = 0.0_wp
+    !> Errors of where contact stands, by which heat passes, are not among them: dies, or the section, are free.
+    logical :: places_left_out = .false.
     !> Error of the stress that the errors of temperatures make, where no law flows.
     real(wp) :: heat_stress = 0.0_wp
     !> Depth of the part in its dies, at points of contact and between them [length], over what is allowed (0: nothing states that).
@@ -117,6 +120,7 @@ contains
     closing%space_mean_largest = solution%heat%space_mean_largest
     if (closing%space_steps > 0) call errors_of_phases(scene, solution, closing%phases)
     if (solution%work%elastic > energy_without_strain(scene, equations, volume)) closing%heat_stress = solution%heat%stress_error
+    closing%places_left_out = leaves_places_out(scene, equations)
     closing%heat_due = pending_temperature(scene, equations%laws, equations%drivers, solution)
     closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))
     closing%contact = size(scene%dies) > 0 .and. closing%space

@@ -53,7 +53,7 @@ contains
     if (closing%warm .and. closing%heat_steps == 0) call row('in time', 'heat: not estimated (THETA)', '')
     if (closing%heat_steps > 0) &
       call row('in time', 'heat: '//to_text(closing%heat_now, 3)//' [temperature] at the end, at most ' &
-               //to_text(closing%heat_largest, 3)//stress_of_heat()//work_not_heat(), &
+               //to_text(closing%heat_largest, 3)//places()//stress_of_heat()//work_not_heat(), &
                times(closing%heat_cost)//' the time: shorter steps')
     if (closing%contact) then
       words = 'depth '//to_text(closing%depth, 3)
@@ -77,6 +77,14 @@ contains
       if (closing%heat_stress > 0) words = '; stress '//percent(closing%heat_stress)
       if (closing%heat_stress > largest_stress) words = '; '//hidden_stress()
     end function stress_of_heat
+
+    !> Where contact stands is not followed.
+    function places() result(words)
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (closing%places_left_out) words = ' (without that of where contact stands: dies, or the section, are free)'
+    end function places
 
     !> Temperatures are behind by the work of the last step.
     function work_not_heat() result(words)
@@ -175,6 +183,7 @@ contains
       call json%add('sum', closing%heat)
       if (closing%heat_stress > 0) call json%add('stress_pct', 100*closing%heat_stress)
       if (closing%heat_stress > largest_stress) call json%add('stress_known', .false.)
+      if (closing%places_left_out) call json%add('contact_places_known', .false.)
       if (closing%heat_due > 0) call json%add('work_not_heat', closing%heat_due)
       call json%add('half_costs', closing%heat_cost)
       call json%end_object()

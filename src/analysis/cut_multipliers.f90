@@ -4,6 +4,7 @@ module cut_multipliers
   use loads, only: multiplier_at
   use scene, only: scene_t
   use text, only: add => add_text, string_t, to_text
+  use weld_sources, only: name_of_torch
   implicit none
   private
   public :: judge_cut_multipliers
@@ -40,7 +41,8 @@ contains
           n = size(path, 2)
           if (scene%sources(k)%crosses .or. n < 2) cycle
           if (path(1, n) > stop_at + little(stop_at)) &
-            call add(warnings, 'GOLDAK '//to_text(k)//': its path goes on to '//to_text(path(1, n) - begins)//' after '//ends)
+            call add(warnings, name_of_torch(scene%sources(k), k)//': its path goes on to '//to_text(path(1, n) - begins) &
+                     //' after '//ends)
         end associate
       end do
     end associate

@@ -28,7 +28,8 @@ module energy_books
 
 contains
 
-  !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion.
+  !> External work by the trapezoidal rule: forces from outside on nodes and pilots times their motion; without the way that a force
+  !> takes a die over a gap, on which nothing takes work of it: its press keeps or loses that.
   subroutine book_work(equations, du, solution)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: du(:)   !! (ndof) motion of the step [unknown]
@@ -44,7 +45,7 @@ contains
       do k = 1, size(solution%fields(f)%applied, 2)
         done = 0
         do c = 1, solution%fields(f)%ncomp
-          call book(equations%dofs%fields(f)%number(c, k), solution%fields(f), solution%fields(f)%applied(c, k))
+          call book(equations%dofs%fields(f)%number(c, k), solution%fields(f), free_way(f, c, k), solution%fields(f)%applied(c, k))
         end do
         if (solution%fields(f)%place == on_pilots) sizes = sizes + abs(done)
       end do
@@ -56,15 +57,24 @@ contains
 
   contains
 
-    subroutine book(dof, field, force)
+    pure function free_way(f, c, k) result(way)
+      integer, intent(in) :: f, c, k   !! field, component, node or die
+      real(wp) :: way                  !! [length]
+
+      way = 0
+      if (f == pilot_field .and. c <= 2) way = equations%way_to_part(c, k)
+    end function free_way
+
+    subroutine book(dof, field, way, force)
       integer, intent(in) :: dof
       type(field_t), intent(in) :: field
+      real(wp), intent(in) :: way   !! over a gap [length]
       real(wp), intent(inout) :: force
       real(wp) :: part
 
       if (dof == 0) return
       if (field%quantity == 'motion') then
-        part = 0.5_wp*(force + applied(dof))*du(dof)
+        part = 0.5_wp*(force + applied(dof))*(du(dof) - way)
         done = done + part
         solution%external_work = solution%external_work + part
         associate (work => solution%work)

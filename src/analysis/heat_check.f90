@@ -18,12 +18,15 @@ module heat_check
   use scene, only: group_t, host_of, lacks_mesh, role_heat_contact, scene_t
   use solution, only: start_fields
   use state_variables, only: find_variable
+  use sheet_sources, only: judge_sheet_sources
+  use steel_numbers, only: judge_steel_numbers
   use steel_temperatures, only: judge_steel_temperatures
   use steel_units, only: judge_units
+  use steels, only: unknown_temperature
   use text, only: add => add_text, string_t, to_text
   use torch_units, only: judge_torch_powers
   use vectors, only: length_of
-  use weld_sources, only: felt_ahead, power_in_plane, share_within
+  use weld_sources, only: felt_ahead, name_of_torch, power_in_plane, share_within
   implicit none
   private
   public :: check_exchanges, check_heat
@@ -38,6 +41,8 @@ module heat_check
   real(wp), parameter :: liquid_nitrogen = 77.0_wp
   !> Absolute zero [degC].
   real(wp), parameter :: absolute_zero = -273.15_wp
+  !> Less austenite than that is a mixture that is cold.
+  real(wp), parameter :: half = 0.5_wp
   !> Half of a largest value is meant to be half.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
@@ -62,6 +67,8 @@ contains
     call judge_torch_powers(scene, laws, warnings)
     call judge_kinetics(scene, warnings)
     call judge_steel_temperatures(scene, warnings)
+    call judge_steel_numbers(scene, warnings)
+    call judge_sheet_sources(scene, laws, warnings)
     call judge_hardness(scene, warnings)
     call judge_cycle_heat(scene, laws, warnings)
     if (scene%fields(displacement_field)%declared) return
@@ -117,6 +124,10 @@ contains
           call add(warnings, group%name//': it begins at '//to_text(coldest, 4)//', which is '//to_text(coldest + zero, 4) &
                    //' degC by ZERO of its law, below absolute zero')
         end if
+        if (group%variables(v)%initial < half .and. material%steel%ac3 > unknown_temperature .and. &
+            coldest + zero > material%steel%ac3) &
+          call add(warnings, group%name//': it begins at '//to_text(coldest, 4)//', above Ac3 of the steel '//material%steel%name &
+                   //' ('//to_text(material%steel%ac3, 4)//' degC), and is no austenite: START T, or START PHASES')
         if (group%variables(v)%initial < 1 .or. .not. coldest + zero < material%steel%ms) return
         call add(warnings, group%name//': it begins as austenite at '//to_text(coldest, 4)//', below Ms of the steel ' &
                  //material%steel%name//' ('//to_text(material%steel%ms, 4)//' degC): START T, or START PHASES')
@@ -263,6 +274,7 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: k   !! place in the scene's list
     type(string_t), allocatable, intent(inout) :: warnings(:)
+    character(len=:), allocatable :: when
     real(wp) :: share, least, time, at, way, axis, begins
     integer :: i, j
     integer, parameter :: parts = 8
@@ -292,19 +304,21 @@ contains
                   *min(scene%strategy%largest_step/(path(1, i) - path(1, i - 1)), 1.0_wp))
       end do
     end associate
-    if (least < expected_share) call add(warnings, 'GOLDAK '//to_text(k)//': at time '//to_text(at - begins, 3)//' only ' &
+    when = 'at time '//to_text(at - begins, 3)
+    if (scene%sources(k)%crosses) when = 'where it crosses'
+    if (least < expected_share) call add(warnings, name_of_torch(scene%sources(k), k)//': '//when//' only ' &
       //to_text(100*least, 3)//' % of half its ellipse is found in its bodies, which take all of the power: it ends outside them ' &
       //'(half a weld, of half the power, does), or elements are longer than its semi-axes')
     if (scene%sources(k)%crosses) then
       share = share_within(scene%sources(k), begins, scene%strategy%end_time)
-      if (share < whole_share) call add(warnings, 'GOLDAK '//to_text(k)//': from the start to the end of the ' &
+      if (share < whole_share) call add(warnings, name_of_torch(scene%sources(k), k)//': from the start to the end of the ' &
         //trim(merge('operation', 'run      ', scene%operation > 0))//' it leaves '//to_text(100*share, 3) &
         //' % of its heat in the plane: it crosses at time '//to_text(scene%sources(k)%crossing_time - begins, 3) &
         //', too early or too late (CROSS, STOP)')
     end if
     ! with a tolerance steps are as short as the torch asks
-    if (way > axis .and. .not. scene%strategy%time_tolerance > 0) call add(warnings, 'GOLDAK '//to_text(k)//': it goes ' &
-      //to_text(way/axis, 3)//' times its shorter semi-axis in a step (STRAT): the heat of single steps shows')
+    if (way > axis .and. .not. scene%strategy%time_tolerance > 0) call add(warnings, name_of_torch(scene%sources(k), k) &
+      //': it goes '//to_text(way/axis, 3)//' times its shorter semi-axis in a step (STRAT): the heat of single steps shows')
   end subroutine judge_torch
 
 end module heat_check

@@ -9,6 +9,7 @@
 module laid_bodies
   use fields, only: find_field, has_corners_only
   use heat_points, only: functions_of, functions_t
+  use heat_record, only: heat_record_t
   use kinds, only: eps, wp
   use law_api, only: driver_count, driver_temperature, heat_law, law_t
   use point_temperatures, only: temperature_field
@@ -72,7 +73,57 @@ contains
         end associate
       end do
     end do
+    if (size(solution%heat%finer) > 0) &
+      call note_joints(scene, has_heat, temperature, apart, solution%fields(f)%value(1, :), solution%heat)
   end subroutine share_heat
+
+  !> What the temperatures of the joint draw out over an element, at middles of its sides and at its centre, where a finer mesh has
+  !> those of the bodies: errors in space (space_error) that begin there. Contents follow of the temperatures, in the first step.
+  pure subroutine note_joints(scene, has_heat, temperature, apart, values, heat)
+    type(scene_t), intent(in) :: scene
+    logical, intent(in) :: has_heat(:)          !! (ngroup)
+    real(wp), intent(in) :: temperature(:, :)   !! (nnode, ngroup) their own [temperature]
+    real(wp), intent(in) :: apart(:)            !! (nnode) difference at shared nodes, 0 elsewhere [temperature]
+    real(wp), intent(in) :: values(:)           !! (nnode) now [temperature]
+    type(heat_record_t), intent(inout) :: heat
+    integer :: seen_by(size(values))   ! the last group, -1 where there are more
+    logical :: noted(size(values))
+    real(wp) :: drawn(4)               ! at the corners
+    integer :: g, e, k, n
+
+    seen_by = 0
+    do g = 1, size(scene%groups)
+      if (.not. has_heat(g)) cycle
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        associate (nodes => scene%groups(g)%connectivity(:, e))
+          where (seen_by(nodes) == 0 .or. seen_by(nodes) == g)
+            seen_by(nodes) = g
+          else where
+            seen_by(nodes) = -1
+          end where
+        end associate
+      end do
+    end do
+    noted = .false.
+    do g = 1, size(scene%groups)
+      if (.not. has_heat(g)) cycle
+      n = size(values) + sum([(size(scene%groups(k)%connectivity, 2), k=1, host_of(scene, g) - 1)], &
+                             mask=[(is_solid(scene%groups(k)), k=1, host_of(scene, g) - 1)])
+      do e = 1, size(scene%groups(g)%connectivity, 2)
+        associate (nodes => scene%groups(g)%connectivity(:, e))
+          if (.not. any(apart(nodes(:4)) > 0)) cycle
+          drawn = values(nodes(:4)) - temperature(nodes(:4), g)
+          do k = 1, 4
+            if (seen_by(nodes(4 + k)) /= g .or. noted(nodes(4 + k))) cycle
+            heat%finer(nodes(4 + k)) = heat%finer(nodes(4 + k)) - 0.5_wp*(drawn(k) + drawn(mod(k, 4) + 1))
+            noted(nodes(4 + k)) = .true.
+          end do
+          heat%finer(n + e) = heat%finer(n + e) - 0.25_wp*sum(drawn)
+        end associate
+      end do
+    end do
+    heat%finer_content = 0
+  end subroutine note_joints
 
   !> What START gives to a body (nnode); 0 where there is none.
   pure function laid_at(scene, field, body) result(values)

@@ -12,6 +12,7 @@ module run_deck
   use diagnostics, only: diagnostics_t
   use errors, only: error_t, exit_done, exit_input, exit_remesh, exit_signal, fail
   use exchange, only: read_state, write_checkpoint
+  use finer_temperatures, only: start_finer
   use folding_run, only: save_with_contact
   use folder_lock, only: folder_lock_t, lock_folder, unlock_folder
   use heat_handed_over, only: hand_heat_over
@@ -90,6 +91,7 @@ contains
     run%force_agreed = options%force_agreed
     if (.not. (allocated(error) .or. options%check)) then
       call start_solution(scene, solution)
+      if (.not. run%resume) call start_finer(scene, solution%heat%finer)
       if (run%resume) call read_state(checkpoint, scene, solution, error)
       ! the reason why the run stopped is dropped: it goes on
       call drop_triggers(solution%estimate)

@@ -1,6 +1,6 @@
 !> What a run ends with, whatever has happened: warnings, what it has cost and reached, summary and listing.
 module run_ending
-  use absolute_cold, only: warn_of_absolute_cold
+  use absolute_cold, only: warn_of_absolute_cold, warn_of_vapour
   use accuracy_plan, only: accuracy_lines, accuracy_warning, judge_run
   use accuracy_rules, only: fineness_t
   use accuracy_samples, only: add_cost, read_sample
@@ -179,6 +179,7 @@ contains
     call warn_of_missing_austenite(scene, solution, warnings)
     call warn_of_held_steels(scene, solution, warnings)
     call warn_of_absolute_cold(scene, solution, warnings)
+    call warn_of_vapour(scene, solution, warnings)
     call warn_of_crossed_bodies(scene, run%equations%free_sides, solution, warnings)
   end subroutine warn_again
 

@@ -8,7 +8,7 @@ module steel_temperatures
   use text, only: add_new_text, string_t, to_text
   implicit none
   private
-  public :: judge_steel_temperatures, words_of_temperatures
+  public :: judge_steel_temperatures, top_of, words_of_temperatures
 
   !> No steel has more [degC]: Ae1 and Ac1 (pure iron 912, steels of 17 % chromium 900), Ae3 and Ac3 (those with much silicon or
   !> aluminium), Bs and Ms (pure iron 545; 700 cooled by 1e5 K/s).

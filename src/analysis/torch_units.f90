@@ -9,6 +9,7 @@ module torch_units
   use law_api, only: driver_count, driver_temperature, find_parameter, heat_law, law_t
   use scene, only: host_of, scene_t
   use text, only: add => add_text, string_t, to_text
+  use weld_sources, only: name_of_torch
   implicit none
   private
   public :: judge_torch_powers
@@ -38,7 +39,7 @@ contains
         if (.not. power > 0) cycle
         warmth = source%efficiency*power/source%speed/(capacity*0.5_wp*pi*source%width*source%depth)
         if (warmth > least_warmth .and. warmth < most_warmth) cycle
-        call add(warnings, 'GOLDAK '//to_text(k)//': P reaches '//to_text(power, 4)//', which at the speed ' &
+        call add(warnings, name_of_torch(scene%sources(k), k)//': P reaches '//to_text(power, 4)//', which at the speed ' &
                  //to_text(source%speed, 4)//' warms what its half ellipse crosses by '//to_text(warmth, 3) &
                  //' K if none of it is conducted away, welds by thousands: is P in the unit of power of the deck (mW in mm N s, ' &
                  //'W in m N s)?')

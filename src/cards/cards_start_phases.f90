@@ -57,7 +57,10 @@ contains
       if (cursor%failed()) return
       given(g) = .true.
       n = n + 1
-      call start_with(draft%scene%materials(draft%scene%groups(g)%material)%steel, z/sum(z), draft%scene%groups(g))
+      ! a file with mistakes, told at the law, has no steel
+      associate (material => draft%scene%materials(draft%scene%groups(g)%material))
+        if (allocated(material%steel)) call start_with(material%steel, z/sum(z), draft%scene%groups(g))
+      end associate
     end do
     call ask_for_data(cursor, draft, body, z > 0)
     if (n == 0) call cursor%fail('there are no phases to begin with: expected a law that keeps them '// &
@@ -84,6 +87,7 @@ contains
       if (m == 0) cycle
       if (asked(m) .or. draft%scene%materials(m)%law_id == 0) cycle
       asked(m) = .true.
+      if (.not. allocated(draft%scene%materials(m)%steel)) cycle
       associate (law => draft%laws(draft%scene%materials(m)%law_id))
         if (.not. associated(law%check_phases)) cycle
         call law%check_phases(draft%scene%materials(m), given, problems)

@@ -37,6 +37,7 @@ contains
       if (deck%cards(i)%keyword /= 'GOLDAK') cycle
       call cursor%open(deck%cards(i), diagnostics)
       source = weld_source_t()
+      source%where_defined = diagnostics%place(cursor%where())
       call read_bodies(cursor, draft, words, bodies)
       call read_words(cursor, draft, words, source)
       call read_path(cursor, source)

@@ -4,7 +4,7 @@
 !> place, goes on. The mesh is that of the one before, as a generation of its own: files and remeshing know nothing of operations.
 module next_operation
   use fields, only: displacement_field, find_field, on_nodes, on_section, pilot_field
-  use finer_temperatures, only: take_finer
+  use finer_temperatures, only: start_finer, take_finer
   use kinds, only: wp
   use new_bodies, only: note_laid, place_new_nodes
   use remesh, only: remesh_t
@@ -64,6 +64,7 @@ contains
     integer :: f, g, k
 
     call start_solution(new, fresh, before%time)
+    call start_finer(new, fresh%heat%finer)
     do k = 1, size(new%dies)
       fresh%fields(pilot_field)%value(:, k) = pilot_at(new, k, before%time)
     end do

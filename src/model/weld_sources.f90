@@ -12,10 +12,12 @@ module weld_sources
   use kinds, only: pi, wp
   use loads, only: multiplier_t, multiplier_at
   use multiplier_means, only: mean_of_multiplier
+  use text, only: to_text
   implicit none
   private
   public :: weld_source_t
-  public :: felt_ahead, has_front, mean_power, plane_integral, power_in_plane, reaches, share_within, shape_at, times_to_hit
+  public :: felt_ahead, has_front, mean_power, name_of_torch, plane_integral, power_in_plane, reaches, share_within, shape_at, &
+            times_to_hit
 
   !> Beyond this exponent the source is less than round-off of its centre, and nothing is released.
   real(wp), parameter :: largest_exponent = 45.0_wp
@@ -23,6 +25,8 @@ module weld_sources
   real(wp), parameter :: felt_ahead = 1.5_wp
 
   type :: weld_source_t
+    !> Where the deck has its card, for messages.
+    character(len=:), allocatable :: where_defined
     !> Power times multiplier (0 for none) times efficiency.
     real(wp) :: power = 0.0_wp, efficiency = 1.0_wp
     integer :: multiplier = 0
@@ -38,6 +42,16 @@ module weld_sources
   end type weld_source_t
 
 contains
+
+  !> A torch in messages: its number among all, and its card.
+  pure function name_of_torch(source, number) result(name)
+    type(weld_source_t), intent(in) :: source
+    integer, intent(in) :: number
+    character(len=:), allocatable :: name
+
+    name = 'GOLDAK '//to_text(number)
+    if (allocated(source%where_defined)) name = name//' ('//source%where_defined//')'
+  end function name_of_torch
 
   !> What is released at a point over what is released at the centre.
   pure function shape_at(source, time, point) result(shape)

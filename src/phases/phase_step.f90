@@ -89,7 +89,7 @@ contains
       a = b
       k = k + direction
     end do
-    call pass_rate(dt, before, now, committed(austenite), s(at_rate))
+    call pass_rate(dt, before, now, committed, s(at_rate))
     state = s%value
     slope = s%slope
     heat = released%value
@@ -198,19 +198,21 @@ contains
     s(austenite) = dual_t(1 - others%value, -others%slope)
   end subroutine settle
 
-  !> Cooling through 700 degC at the rate of the step: that of the phases that form from the austenite there. What was there already
-  !> has formed at another one: of Maynier's hardness, linear in the logarithm of the rate, the mean by amounts counts. Of a mixture
+  !> Cooling through 700 degC at the rate of the step: that of the phases that form from the austenite there, or, where none is
+  !> left, that have formed from it above (the point has not been colder since it was heated to Ac1). What was there already has
+  !> formed at another one: of Maynier's hardness, linear in the logarithm of the rate, the mean by amounts counts. Of a mixture
   !> that the deck gives no rate is known: it counts as formed at the same one, if any forms.
-  pure subroutine pass_rate(dt, before, now, fraction, rate)
+  pure subroutine pass_rate(dt, before, now, committed, rate)
     real(wp), intent(in) :: dt, before, now     !! [s], temperatures of the step [degC]
-    real(wp), intent(in) :: fraction            !! of austenite at its start [-]
+    real(wp), intent(in) :: committed(:)        !! (state_size) at its start [state_units]
     type(dual_t), intent(inout) :: rate         !! [K/s]
-    real(wp) :: new, old
+    real(wp) :: new, old, fraction
 
     if (.not. (before >= rate_temperature .and. now < rate_temperature .and. dt > 0)) return
-    if (.not. fraction > least_austenite) return
-    new = (before - now)/dt
+    fraction = committed(austenite)
     old = rate%value
+    if (.not. fraction > least_austenite .and. (old > 0 .or. committed(at_coldest) < rate_temperature)) return
+    new = (before - now)/dt
     rate = dual_t(new, -1/dt)
     if (.not. old > 0) return
     rate%value = exp((1 - fraction)*log(old) + fraction*log(new))

@@ -64,6 +64,7 @@ contains
     call find_loose_bodies(scene, equations%dofs, equations%loose)
     allocate (equations%slides(3, size(scene%dies)), source=.false.)
     allocate (equations%seated(size(scene%dies)), source=0.0_wp)
+    allocate (equations%way_to_part(2, size(scene%dies)), source=0.0_wp)
     allocate (equations%drag(equations%dofs%ndof), source=0.0_wp)
     call list_solves(scene%fields, scene%strategy%coupling, equations%solves)
     do s = 1, size(equations%solves)

@@ -83,6 +83,8 @@ module equations
     logical, allocatable :: slides(:, :)
     !> Forces on dies that the present step started just in touch with the part, 0 for others (ndie; seating).
     real(wp), allocatable :: seated(:)
+    !> Ways, along X and Y, that it took them over a gap (2, ndie) [length].
+    real(wp), allocatable :: way_to_part(:, :)
     type(ledger_t) :: timers
     type(team_t) :: team
     !> Internal force (element forces summed) at the last evaluation, and the sum of their sizes (ndof).

@@ -16,7 +16,7 @@ module fine_bodies
   use solution, only: solution_t
   implicit none
   private
-  public :: add_bodies, chord_capacities
+  public :: add_bodies, chord_capacities, contents_of
 
 contains
 
@@ -56,6 +56,37 @@ contains
       end associate
     end do
   end subroutine add_bodies
+
+  !> Heat contents that differences of the temperature make at the start of a step, however large they are.
+  subroutine contents_of(scene, equations, fine, before, differences, content)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    type(fine_mesh_t), intent(in) :: fine
+    real(wp), intent(in) :: before(:)        !! (nnode of the mesh) [temperature]
+    real(wp), intent(in) :: differences(:)   !! (nnode) [temperature]
+    real(wp), intent(out) :: content(:)      !! (nnode) [energy]
+    real(wp), allocatable, dimension(:, :) :: mesh, other
+    real(wp) :: taken(9), capacity(9)
+    integer :: e
+
+    content = 0
+    do e = 1, fine%nelement
+      associate (g => fine%group(e), nodes => fine%nodes(:, e))
+        if (.not. any(abs(differences(nodes)) > 0)) cycle
+        associate (material => scene%materials(scene%groups(g)%material))
+          associate (law => equations%laws(material%law_id))
+            allocate (mesh(driver_count(law), 9), source=0.0_wp)
+            mesh(driver_temperature, :) = matmul(before(nodes(:4)), corner_share)
+            other = mesh
+            other(driver_temperature, :) = other(driver_temperature, :) + differences(nodes)
+            call law%store(material, mesh, other, taken, capacity)
+            deallocate (mesh, other)
+          end associate
+        end associate
+        content(nodes) = content(nodes) + fine%volume(:, e)*taken
+      end associate
+    end do
+  end subroutine contents_of
 
   !> makes there.
   subroutine chord_capacities(scene, equations, fine, content, system)

@@ -33,7 +33,7 @@ module misplaced_contact
   use timers, only: ledger_t
   implicit none
   private
-  public :: add_misplaced
+  public :: add_misplaced, leaves_places_out
 
   !> A change of conductances, or of shares of radiation, that is no more than this share of them is left out.
   real(wp), parameter :: negligible = 3.0e-4_wp
@@ -59,7 +59,8 @@ contains
     logical :: done, balanced, resting(0:size(equations%loose)), keeps(size(scene%groups))
 
     if (.not. (outcome%converged .and. outcome%heat%estimated .and. scene%follows_path)) return
-    if (conductance_count(equations%drivers) == 0 .or. free_beside_nodes(scene, equations)) return
+    if (conductance_count(equations%drivers) == 0) return
+    if (leaves_places_out(scene, equations)) return
     allocate (errors(equations%dofs%ndof))
     if (allocated(outcome%path%error)) then
       errors = of_unknowns(equations, outcome%path%error)
@@ -135,6 +136,16 @@ contains
 
     yes = sum(abs(with - against)) > negligible*sum(max(with, 0.0_wp) + max(against, 0.0_wp))
   end function differ
+
+  !> Heat passes by contact that moves, and errors of its places are not known.
+  pure function leaves_places_out(scene, equations) result(yes)
+    type(scene_t), intent(in) :: scene
+    type(equations_t), intent(in) :: equations
+    logical :: yes
+
+    yes = .false.
+    if (scene%follows_path .and. conductance_count(equations%drivers) > 0) yes = free_beside_nodes(scene, equations)
+  end function leaves_places_out
 
   !> Forces move dies, or a section is free: errors of their places are not carried, so that those of gaps are not known.
   pure function free_beside_nodes(scene, equations) result(yes)

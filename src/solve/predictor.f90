@@ -80,6 +80,7 @@ contains
     equations%slides = .false.
     equations%seated = 0
     call find_known_motion(scene, equations, solution, dt, go_on, left, known)
+    if (.not. known%goes_on) equations%way_to_part = 0
     staying = known%staying
     kept = .false.
     bend = 0
@@ -184,7 +185,7 @@ contains
       call leave_at_rest(scene, equations, solution, solution%time + dt, du)
       call leave_dies_at_rest(scene, equations%dofs, solution, external, du)
       if (.not. known%goes_on) &
-        call seat_dies(scene, equations%dofs, solution, external, equations%size, du, equations%seated)
+        call seat_dies(scene, equations%dofs, solution, external, equations%size, du, equations%seated, equations%way_to_part)
       if (present(given)) du = merge(given, du, known%fixed)
       do k = 1, size(known%motion)
         associate (p => equations%dofs%prescribed(k))

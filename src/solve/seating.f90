@@ -36,7 +36,7 @@ module seating
 contains
 
   !> Move the pilots of such dies in the motion of a prediction.
-  subroutine seat_dies(scene, dofs, solution, external, scale, du, seated)
+  subroutine seat_dies(scene, dofs, solution, external, scale, du, seated, ways)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
     type(solution_t), intent(in) :: solution
@@ -44,12 +44,14 @@ contains
     real(wp), intent(in) :: scale         !! size of the scene [length]
     real(wp), intent(inout) :: du(:)      !! (ndof) motion of the step [unknown]
     real(wp), intent(out) :: seated(:)    !! (ndie) forces on those that are just in touch, moved there or not, 0 for others [force]
+    real(wp), intent(out) :: ways(:, :)   !! (2, ndie) along X and Y, of those that are moved, 0 for others [length]
     logical :: idle(size(scene%dies)), in_touch_now
     real(wp), allocatable :: x(:, :)
     real(wp) :: pilot(3), push(2), way
     integer :: k
 
     seated = 0
+    ways = 0
     if (size(scene%die_forces) == 0) return
     idle = idle_dies(scene, solution)
     do k = 1, size(scene%dies)
@@ -62,8 +64,8 @@ contains
       call find_way(scene, x, k, pilot, push/length_of(push), longest_way*scale, way, in_touch_now)
       if (.not. (way > 0 .or. in_touch_now)) cycle
       seated(k) = length_of(push)
-      push = way*push/length_of(push)
-      call move(dofs%fields(pilot_field)%number(1:2, k), push)
+      ways(:, k) = way*push/length_of(push)
+      call move(dofs%fields(pilot_field)%number(1:2, k), ways(:, k))
     end do
 
   contains

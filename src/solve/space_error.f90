@@ -17,7 +17,7 @@ module space_error
   use equations, only: equations_t, take_turn
   use errors, only: error_t
   use fields, only: find_field, has_corners_only
-  use fine_bodies, only: add_bodies, chord_capacities
+  use fine_bodies, only: add_bodies, chord_capacities, contents_of
   use fine_loads, only: add_loads, by_tables
   use fine_mesh, only: make_fine_mesh, place_fine_mesh
   use fine_mesh_data, only: fine_mesh_t
@@ -74,7 +74,7 @@ contains
       call make_system(scene, equations, solution, field, dt, outcome, at_start, at_end, system)
       finer = solution%heat%finer
       call advance(scene, equations, solution, field, dt, in_two_stages(scene, solution, outcome), outcome%iterations > 0, &
-                   system, error)
+                   at_start, system, error)
       if (.not. allocated(error)) &
         call follow_space_phases(scene, equations, equations%fine, at_start, at_end, finer, solution%heat%finer, dt, solution)
     end if
@@ -117,7 +117,7 @@ contains
   end subroutine make_system
 
   !> The difference at the end of the step, and what is told of it.
-  subroutine advance(scene, equations, solution, field, dt, two_stages, at_hand, system, error)
+  subroutine advance(scene, equations, solution, field, dt, two_stages, at_hand, before, system, error)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -125,6 +125,7 @@ contains
     real(wp), intent(in) :: dt
     logical, intent(in) :: two_stages
     logical, intent(in) :: at_hand   !! factors of a matrix of this step are: those of an earlier one are not, in a run that goes on
+    real(wp), intent(in) :: before(:)   !! (nnode of the mesh) at the start of the step [temperature]
     type(fine_system_t), intent(inout) :: system
     type(error_t), allocatable, intent(out) :: error
     real(wp), dimension(equations%fine%nnode) :: source, content, d
@@ -137,8 +138,8 @@ contains
     source = 2*system%unbalanced - to_corners_all(equations%fine, system%unbalanced)
     d = solution%heat%finer
     content = solution%heat%finer_content
-    ! on a new mesh: temperatures alone were carried to it
-    if (.not. any(abs(content) > 0)) content = system%capacity*d
+    ! at the start, on a new mesh, and where a body was laid: temperatures alone are known
+    if (.not. any(abs(content) > 0)) call contents_of(scene, equations, equations%fine, before, d, content)
     where (fixed)
       d = 0
       content = 0

@@ -300,6 +300,7 @@ def lost(checks):
         return
     path = summary(run.out)["accuracy"]["path"]
     checks.that(0 < path["motion_pct"] < 0.2, "lost: error of the motion by the path [%]", path)
+    checks.that("contact_places_known" not in summary(run.out)["accuracy"]["heat"], "lost: where contact stands is known", summary(run.out)["accuracy"]["heat"])
     checks.that(path.get("stress_known", True) and path["stress_pct"] < 3, "lost: error of the stress [%]", path)
 
 

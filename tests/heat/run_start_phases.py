@@ -132,6 +132,9 @@ def refused(checks):
                        ("START  PHASES PEARLITE 1.\nSTART  PHASES FERRITE 1. a", "are given twice"), ("START  PHASES PEARLITE 1. c", "name of a body")):
         result = deck(checks, "refused", "0. 400.   10. 100.", 10., start, 0)
         checks.that(result.returncode == 2 and say in said(result), f"refused: {start!r}", said(result))
+    for own in (0, 1):
+        result = deck(checks, "refused", "0. 400.   10. 100.", 10., "START  PHASES PEARLITE 1.", own, STEEL.replace("TEMPS", "TEMP", 1))
+        checks.that(result.returncode == 2 and "s.met:3:1" in said(result), "refused: a steel with mistakes that bodies with phases at the start are of", said(result))
 
 
 def without_data(checks):

@@ -9,7 +9,7 @@ import re
 import sys
 
 sys.dont_write_bytecode = True
-from support import DONE, NO_CONVERGENCE, Checks, history, run, said, write  # noqa: E402
+from support import DONE, NO_CONVERGENCE, Checks, history, run, said, summary, write  # noqa: E402
 
 # A block under a die that is wider than it; the die's pilot stands over the middle of the block.
 BLOCK = """TITLE  {title}
@@ -175,6 +175,10 @@ def gaps(checks):
         close(checks, f"depth over a gap, {name}", -rows["displacement_y_press"][-1], sunk + gap, 1e-7)
         for step, time in enumerate(rows["time"]):
             close(checks, f"force over a gap, {name}, step {step + 1}", rows["force_y_press"][step], force * time, 1e-8)
+        # what the die does to the block and to its penalties, from 0 to F: the way over the gap is no work on the part
+        if name != "oblique":
+            close(checks, f"work over a gap, {name}", summary(checks.path(name))["energy"]["work_of_dies"], force*sunk/2, 1e-6)
+            checks.that(not summary(checks.path(name))["warnings"], f"work over a gap, {name}: no warning", summary(checks.path(name))["warnings"])
         if name == "far":
             checks.that(not any(rows["displacement_x_press"]), "nothing moves it along X", rows["displacement_x_press"])
     checked = run([checks.path("gap.lag"), "--check"])

@@ -36,6 +36,8 @@ def accuracy_section(run: Run) -> Sections:
         found = ", ".join(text.format(brief(number(entry[key]), 3)) for key, text in words.items() if key in entry)
         if entry.get("stress_without_heat") is True:
             found += " (without that of temperatures)"
+        if entry.get("contact_places_known") is False:
+            found += " (without that of where contact stands: dies, or the section, are free)"
         cost = f"about {brief(number(entry['half_costs']), 2)} times the time ({HOW[name]})" if "half_costs" in entry else "\N{EN DASH}"
         rows.append(("", (escape(where), escape(found), escape(cost))))
     asked = given.get("asked")

@@ -1,0 +1,89 @@
+!> Numbers of a steel that no steel has, each beside another one: units were mixed, or a line slipped.
+module steel_numbers
+  use kinds, only: wp
+  use scene, only: scene_t
+  use steel_temperatures, only: top_of
+  use steels, only: bainite, kinetics_none, phase_count, phase_names, prop_yield, prop_young, steel_t, unknown_temperature
+  use temperature_curves, only: curve_at, is_given
+  use text, only: add_new_text, string_t, to_text
+  implicit none
+  private
+  public :: judge_steel_numbers, words_of_numbers
+
+  !> Rates of martensite by temperature [1/K]: 0.011 (D.P. Koistinen, R.E. Marburger, Acta Metall. 7 (1959) 59); 0.0107 to 0.0224
+  !> for carbon up to 1.1 % (S.M.C. van Bohemen, Mater. Sci. Technol. 28 (2012) 487); up to 0.06 fitted to single steels.
+  real(wp), parameter :: least_beta = 0.002_wp, most_beta = 0.2_wp
+  !> Steels yield at less than this share of Young's modulus, as other metals (law_numbers_check).
+  real(wp), parameter :: largest_yield = 0.03_wp
+  !> Temperatures by a composition are known to less than this [K].
+  real(wp), parameter :: scatter_of_formulas = 75.0_wp
+  !> Where both are compared [degC].
+  real(wp), parameter :: room_temperature = 20.0_wp
+
+contains
+
+  !> Warnings, one line each: of two laws of one steel once.
+  subroutine judge_steel_numbers(scene, warnings)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
+    integer :: m
+
+    do m = 1, size(scene%materials)
+      if (allocated(scene%materials(m)%steel)) call add_new_text(warnings, words_of_numbers(scene%materials(m)%steel))
+    end do
+  end subroutine judge_steel_numbers
+
+  !> What is wrong with the numbers; empty where nothing is.
+  pure function words_of_numbers(steel) result(words)
+    type(steel_t), intent(in) :: steel
+    character(len=:), allocatable :: words
+    real(wp) :: scatter   !! [K]
+
+    scatter = merge(scatter_of_formulas, 0.0_wp, steel%composition%given)
+    words = in_order('Ms', steel%ms, 'Bs', steel%bs, scatter)
+    ! by Andrews' formulas Ae1 may lie above Ae3, that of ferrite, with much carbon
+    if (.not. steel%composition%given) words = words//in_order('Ae1', steel%ae1, 'Ae3', steel%ae3, 0.0_wp)
+    if (steel%kinetics(bainite)%kind /= kinetics_none) &
+      words = words//in_order('the curve of BAINITE', top_of(steel%kinetics(bainite)%start), 'Bs', steel%bs, scatter)
+    if (steel%ms > unknown_temperature .and. .not. (steel%beta > least_beta .and. steel%beta < most_beta)) &
+      words = words//'; BETA of MARTEN is '//to_text(steel%beta, 4)//' 1/K, that of steels '//to_text(least_beta)//' to ' &
+              //to_text(most_beta)
+    words = words//yields(steel)
+    if (words == '') return
+    words = 'the steel '//steel%name//': '//words(3:)
+    if (allocated(steel%where_defined)) words = words//' ('//steel%where_defined//')'
+  end function words_of_numbers
+
+  !> A temperature that lies above another one, below which it is in all steels.
+  pure function in_order(name, value, above, limit, scatter) result(words)
+    character(len=*), intent(in) :: name, above
+    real(wp), intent(in) :: value, limit   !! [degC]
+    real(wp), intent(in) :: scatter        !! of the limit [K]
+    character(len=:), allocatable :: words
+
+    words = ''
+    if (.not. (value > unknown_temperature .and. limit > unknown_temperature)) return
+    if (value > limit + scatter) words = '; '//name//' ('//to_text(value, 5)//') is above '//above//' ('//to_text(limit, 5)//')'
+  end function in_order
+
+  !> The phase whose yield stress is largest beside its modulus, where that is more than steels have.
+  pure function yields(steel) result(words)
+    type(steel_t), intent(in) :: steel
+    character(len=:), allocatable :: words
+    real(wp) :: ratio(phase_count)
+    integer :: p
+
+    ratio = 0
+    do p = 1, phase_count
+      associate (young => steel%properties(prop_young, p), yield => steel%properties(prop_yield, p))
+        if (is_given(young) .and. is_given(yield)) &
+          ratio(p) = curve_at(yield, room_temperature)/curve_at(young, room_temperature)
+      end associate
+    end do
+    words = ''
+    p = maxloc(ratio, 1)
+    if (ratio(p) > largest_yield) words = '; '//trim(phase_names(p))//' yields at '//to_text(ratio(p), 3)//' of E at 20 degC, ' &
+                                          //'steels below '//to_text(largest_yield)//': SY and E are in MPa'
+  end function yields
+
+end module steel_numbers
