@@ -443,6 +443,56 @@ def let_go(checks):
                                               for text in said), f"{name}: told" if told else f"{name}: nothing is told", said)
 
 
+PIN = """TITLE  A pin upset in a ring, the dies let them go
+STATE  AXISYM
+KINEM  LOG
+BLOCK  pin PL8LS 4 soft
+   0. 0.   4. 0.   4. 6.   0. 6.
+   4 1.   6 1.
+BLOCK  ring PL8LS 4 hard
+   4.02 0.   8. 0.   8. 5.   4.02 5.
+   4 1.   5 1.
+LAW    soft EPLA
+   70000. 0.33
+   LINEAR 100. 200.
+LAW    hard EPLA
+   200000. 0.3
+   LINEAR 300. 500.
+LAW    film COUL2D
+   PHI 0.1
+DIE    low
+   SEGM   -1. 0.   20. 0.
+DIE    up PILOT 0. 6.
+   SEGM   20. 6.   -1. 6.
+DIE    bore SIDES ring 4
+CNT2D  pin 1 low film
+CNT2D  ring 1 low film
+CNT2D  pin 3 up film
+CNT2D  pin 2 bore film
+FIXED  pin 4 X
+LIC    go
+   0. 0.   1. -0.6   1.3 0.
+MOVE   up Y go
+LIC    down
+   0. 0.   1.05 0.   1.3 -1.
+MOVE   low Y down
+STRAT  0.02 1.E-6 0.03   5 3
+END
+"""
+
+
+def let_go_together(checks):
+    """A pin that has been upset in a ring holds it: together they rest where the dies have let them go, and have no errors of the motion
+    by round-off of that."""
+    run = Run(checks, "pin-and-ring", PIN)
+    if not run.ok:
+        return
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+        said = [warning["text"] for warning in warnings_in(json.load(summary))]
+    checks.that(any(text.startswith("pin, ring: at the end nothing else holds them") for text in said), "pin and ring: told", said)
+    checks.small(run.history["path_error_motion"][-1], 0.01, "pin and ring: error of the motion")
+
+
 HEATED_STEEL = '''STEEL  base
 SOURCE 'an example'
 TEMPS  AC1 730 AC3 850 MS 300
@@ -565,6 +615,7 @@ def main():
     full(checks)
     passed_planes(checks)
     let_go(checks)
+    let_go_together(checks)
     heated(checks)
     held(checks)
     small(checks)
