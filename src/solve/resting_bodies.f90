@@ -15,7 +15,8 @@
 !> any round-off and in any axes. The force is far below those of a body that is strained. It also makes the matrix regular.
 !> Attempts at a step that failed are followed by ones with more of it.
 !>
-!> Bodies that press on one another and on nothing else, as a rivet and its plates that the tools have left, are such a body together.
+!> Bodies that press on one another and on nothing else, as a rivet and its plates that the tools have left, are such a body
+!> together.
 module resting_bodies
   use equations, only: equations_t
   use fields, only: displacement_field

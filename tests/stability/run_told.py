@@ -64,6 +64,7 @@ WRONG = {
     "pressed, and then off the part": ({"1. -2.": "0.5 -2.   1. -2.\nLIC    off\n   0. 0.   0.5 0.   1. 20.\nMOVE   upper X off"},
                                        "no longer faces the part"),
     "floating": ({"FIXED  billet 1 Y\n": TABLE, "30. 15.   -5. 15.": "30. 16.   -5. 16."}, "nothing holds it in Y before it meets"),
+    "pressed where it is held": ({"FIXED  billet 4 X\n": "FIXED  billet 4 XY\n"}, "into a node at 0 15 that supports hold (FIXED)"),
     "pushed from one side": ({"FIXED  billet 1 Y\n": ""}, "dies press it along Y from one side"),
     "slides between dies": ({"FIXED  billet 4 X\n": "", "PHI 0.3": "PHI 0."}, "press it across that and without friction"),
     "free to slide": ({"FIXED  billet 4 X\n": "", "CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "MOVE   upper Y press\n":
@@ -113,6 +114,7 @@ RIGHT = {"a multiplier of two operations": {"END\n": "OPERA  one\nSTOP   0.5\nOP
          "a plate wider than a bore": {"FIXED  billet 1 Y\n": BORE.format(""), "1. -2.": "1. -6."},
          "dies that close": {**PRESSED, "1. -2.": "1. -16."},
          "a die that a force presses": {"FIXED  billet 1 Y\n": TABLE.replace("lower\n", "lower PILOT 0. -1.\n", 1) + "FORCE  lower Y -1. press\n", "1. -2.": "1. -18."},
+         "held XY below": {"FIXED  billet 1 Y\n": "FIXED  billet 1 XY\n"},
          "between two dies": {"FIXED  billet 1 Y\n": TABLE}, "pushed from both sides": {"FIXED  billet 1 Y\n": "PRES2D billet 1 3 1. press\n"},
          "heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
          "heated and pressed": {**HEATED, "LIC    press\n": "PRES2D billet 3 3 1. press\nLIC    press\n", "   0. 0.   1. -2.\n": "   0. 0.   1. 5.\n"},
