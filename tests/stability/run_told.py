@@ -8,7 +8,8 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 - Dies that move and meet nothing, bodies that go through each other: in the summary.
 - A body that fills a closed die, which goes on: in the summary, with the change of volume of the closed form.
 - A body that passes the plane in which it is held: in the summary.
-- A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die.
+- A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die. Bodies that hold one
+  another are told together.
 - A steel without kinetics of austenite that is heated above Ac1: in the summary; not one that has them, nor one that only cools.
 - A body that friction alone holds and no longer can, on a table that tilts, between two plates, on another body: with code 3. Not a
   body that friction holds and a limit load ends.
