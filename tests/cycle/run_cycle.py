@@ -215,7 +215,7 @@ def kills(checks, draw, deck, whole, number, seconds, **environment):
 def stops(checks, draw, deck, whole, seconds):
     """Stopped by a signal: exit code 128+n, and the same command goes on."""
     for number in STOPS:
-        out, wait, code = checks.path(f"stop-{number}"), draw.uniform(0.1, 0.6) * seconds, DONE
+        out, wait, code = checks.path(f"stop-{number}"), max(draw.uniform(0.1, 0.6) * seconds, 0.1), DONE
         while code == DONE and wait > 0.05:     # a machine that is quicker now has ended before the signal
             shutil.rmtree(out, ignore_errors=True)
             process = begin(deck, out)
