@@ -54,7 +54,7 @@ contains
     if (allocated(error)) return
     call read_new_mesh(seen, s)
     call read_summary(s)
-    if (s%ended%program == ended_remdata .and. s%ended%code == exit_machine) s%has_room = room_for_copy(s%stem)
+    if (s%ended%program == ended_remdata .and. s%ended%code == exit_machine) s%has_room = room_for_mesh(s%stem)
   end subroutine read_situation
 
   !> A checkpoint: is it there, is it whole, what does it hold?
@@ -255,18 +255,20 @@ contains
 
   end subroutine read_summary
 
-  !> Can the checkpoint be written once more?
-  function room_for_copy(stem) result(room)
+  !> Is there room for a new mesh, which may have some times the elements of the old one? Then a disk that was full is not why it
+  !> could not be written.
+  function room_for_mesh(stem) result(room)
     character(len=*), intent(in) :: stem
     logical :: room
+    integer, parameter :: times = 8
     character(len=:), allocatable :: bytes, path
     type(error_t), allocatable :: error, ignored
 
     path = stem//'.room.tmp'
     call read_text(stem//'.'//current_name, bytes, error)
-    if (.not. allocated(error)) call write_text(path, bytes, error)
+    if (.not. allocated(error)) call write_text(path, repeat(bytes, times), error)
     room = .not. allocated(error)
     call remove_file(path, ignored)
-  end function room_for_copy
+  end function room_for_mesh
 
 end module cycle_folder

@@ -78,7 +78,7 @@ module cycle_situation
     logical :: finished = .false.
     !> Warnings that it has.
     integer :: warnings = 0
-    !> There is room on the disk for one more checkpoint.
+    !> There is room on the disk for a new mesh.
     logical :: has_room = .true.
   end type situation_t
 

@@ -14,7 +14,7 @@ module contact_outlook
   use vectors, only: length_of
   implicit none
   private
-  public :: lies_on, look_at_contact, moves, gaps_at_rest, outlook_t
+  public :: depth_of_node, gaps_at_rest, lies_on, look_at_contact, moves, outlook_t
 
   !> Instants at which a moving die is looked at.
   integer, parameter :: ninstant = 50
@@ -156,6 +156,22 @@ contains
     end do
     if (.not. faces) depth = 0
   end subroutine deepest
+
+  !> Depth in the die of a node of a side, as the deck gives it, over the length of the side: below 0 for a gap, and where no point
+  !> of the die is closest.
+  pure subroutine depth_of_node(scene, group, side, node, pilot, over_side)
+    type(scene_t), intent(in) :: scene
+    type(group_t), intent(in) :: group
+    integer, intent(in) :: side, node      !! number of the side, and 1 to 3
+    real(wp), intent(in) :: pilot(3)       !! of the die (x, y, angle) [length and radian]
+    real(wp), intent(out) :: over_side     !! [-]
+    real(wp) :: depth
+    logical :: faces
+
+    call depth_of(scene%mesh%coordinates(:, group%connectivity(:3, side)), at_node(:, node), scene%dies(group%die), pilot, &
+                  4*extent_of(scene), faces, depth, over_side)
+    if (.not. faces) over_side = -huge(over_side)
+  end subroutine depth_of_node
 
   !> Directions along which a die would push the nodes of sides, where it stands at the start.
   pure subroutine find_pushes(sides, die, reach, outlook)

@@ -29,7 +29,8 @@ module floating_bodies
 
 contains
 
-  !> A line for each body that neither a support, a spring, a load nor a contact acts on, added to the warnings of a run at its end.
+  !> A line for each assembly of bodies that neither a support, a spring, a load nor a contact with others acts on, added to the
+  !> warnings of a run at its end.
   subroutine warn_of_floating_bodies(scene, laws, loose, solution, warnings)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
@@ -37,31 +38,66 @@ contains
     type(solution_t), intent(in) :: solution
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning) lines
     logical :: acted_on(0:size(loose)), told(0:size(loose))
+    integer :: assembly(0:size(loose)), part_of(size(loose))
+    character(len=:), allocatable :: names, words
     real(wp) :: gap, over_side
-    integer :: g
+    integer :: g, number
+    logical :: several
 
     if (size(loose) == 0) return
-    call mark_acted_on(scene, laws, solution, loose, solution%time, light, acted_on)
-    told = acted_on
+    call mark_acted_on(scene, laws, solution, loose, solution%time, light, acted_on, assembly)
+    part_of = assembly(loose)
+    told = .false.
     told(0) = .true.
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
-        if (group%is_spring) told(loose(group%connectivity(1, 1))) = .true.
+        if (group%is_spring) told(part_of(group%connectivity(1, 1))) = .true.
       end associate
     end do
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (.not. is_solid(group)) cycle
-        if (told(loose(group%connectivity(1, 1)))) cycle
-        told(loose(group%connectivity(1, 1))) = .true.
-        call nearest_die(scene, solution, loose, loose(group%connectivity(1, 1)), gap, over_side)
+        number = part_of(group%connectivity(1, 1))
+        if (told(number)) cycle
+        told(number) = .true.
+        call nearest_die(scene, solution, part_of, number, gap, over_side)
         if (over_side < lies_on) cycle
-        call add_text(warnings, group%name//': at the end nothing holds it, no support and no contact'//beside(gap)// &
-                      ': it rests where it was let go, and no force says that it would')
+        call name_bodies(number, names, several)
+        words = ': at the end nothing'
+        if (acted_on(loose(group%connectivity(1, 1)))) words = words//' else'
+        words = words//' holds '//trim(merge('them', 'it  ', several))//', no support and no contact'//beside(gap)
+        if (several) then
+          words = words//': they rest where they were let go, and no force says that they would'
+        else
+          words = words//': it rests where it was let go, and no force says that it would'
+        end if
+        call add_text(warnings, names//words)
       end associate
     end do
 
   contains
+
+    !> The bodies of an assembly, each by the first of its groups.
+    pure subroutine name_bodies(number, names, several)
+      integer, intent(in) :: number
+      character(len=:), allocatable, intent(out) :: names
+      logical, intent(out) :: several
+      logical :: named(0:size(loose))
+      integer :: k
+
+      names = ''
+      named = .false.
+      do k = 1, size(scene%groups)
+        if (.not. is_solid(scene%groups(k))) cycle
+        associate (node => scene%groups(k)%connectivity(1, 1))
+          if (part_of(node) /= number .or. named(loose(node))) cycle
+          if (any(named)) names = names//', '
+          names = names//scene%groups(k)%name
+          named(loose(node)) = .true.
+        end associate
+      end do
+      several = count(named) > 1
+    end subroutine name_bodies
 
     !> How far away the nearest die is, where it faces any.
     pure function beside(gap) result(words)
@@ -99,11 +135,11 @@ contains
     end do
   end subroutine warn_of_idle_dies
 
-  !> Least gap between a body and the dies that its contacts name, or the bodies that face it; huge where there is none.
-  subroutine nearest_die(scene, solution, loose, body, gap, over_side)
+  !> Least gap between an assembly of bodies and the dies that its contacts name, or others that face it; huge where there is none.
+  subroutine nearest_die(scene, solution, part_of, number, gap, over_side)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
-    integer, intent(in) :: loose(:), body   !! (nnode) bodies of the nodes; the number of one
+    integer, intent(in) :: part_of(:), number   !! (nnode) assemblies of the nodes; the number of one
     real(wp), intent(out) :: gap            !! [length]
     real(wp), intent(out) :: over_side      !! over the length of the side
     type(scene_t) :: now
@@ -124,14 +160,14 @@ contains
 
   contains
 
-    !> A contact of the body, or one that faces it.
+    !> A contact of the assembly with others.
     pure function is_of(group) result(yes)
       type(group_t), intent(in) :: group
       logical :: yes
 
-      yes = loose(group%connectivity(1, 1)) == body
-      if (yes .or. .not. is_deformable(scene%dies(group%die))) return
-      yes = loose(scene%dies(group%die)%nodes(1, 1)) == body
+      yes = part_of(group%connectivity(1, 1)) == number
+      if (.not. is_deformable(scene%dies(group%die))) return
+      yes = yes .neqv. part_of(scene%dies(group%die)%nodes(1, 1)) == number
     end function is_of
   end subroutine nearest_die
 

@@ -10,6 +10,7 @@ module physics_check
   use law_api, only: law_t
   use law_numbers_check, only: judge_alpha, judge_friction, judge_strains, judge_yield
   use scene, only: axisymmetric, group_t, lacks_mesh, role_side_load, scene_t
+  use pressed_supports, only: judge_pressed_supports
   use supports, only: free_motions
   use text, only: add => add_text, string_t
   use touching_bodies, only: judge_touching
@@ -57,6 +58,7 @@ contains
       end associate
     end do
     call judge_closing(scene, warnings)
+    call judge_pressed_supports(scene, warnings)
     if (.not. lacks_mesh(scene)) call free_motions(scene, outlook, warnings)
     do g = 1, size(scene%materials)
       call judge_yield(scene, laws, g, warnings)

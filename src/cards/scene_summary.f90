@@ -85,18 +85,43 @@ contains
       call add_text(lines, 'load       '//padded(scene%fixations(k)%label, 24)//to_text(size(scene%fixations(k)%nodes))//' nodes')
     end do
     call add_walls(scene, lines)
-    do k = 1, size(scene%forces)
-      associate (force => scene%forces(k))
-        call add_text(lines, 'load       '//padded('FORCE node '//to_text(scene%mesh%labels(force%node))//' ' &
-                                                   //direction_names(force%component), 24) &
-                      //to_text(force%amplitude)//times(scene, force%multiplier))
-      end associate
-    end do
+    call add_forces(scene, lines)
     do k = 1, size(scene%probes)
       call add_text(lines, 'probe      '//padded(scene%probes(k)%name, 24)//'['//scene%probes(k)%unit//']' &
                     //place_words(scene, scene%probes(k)))
     end do
   end subroutine add_loads
+
+  !> A line for each force on a node; for many that follow one another along the same direction, as those of a traction, one with
+  !> their sum.
+  subroutine add_forces(scene, lines)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(inout) :: lines(:)
+    integer, parameter :: many = 8
+    integer :: k, last
+
+    last = 0
+    do k = 1, size(scene%forces)
+      if (k <= last) cycle
+      associate (force => scene%forces(k))
+        last = k
+        do while (last < size(scene%forces))
+          if (scene%forces(last + 1)%component /= force%component .or. scene%forces(last + 1)%multiplier /= force%multiplier) exit
+          last = last + 1
+        end do
+        if (last - k + 1 >= many) then
+          call add_text(lines, 'load       '//padded('FORCE '//to_text(last - k + 1)//' nodes ' &
+                                                     //direction_names(force%component), 24) &
+                        //'together '//to_text(sum(scene%forces(k:last)%amplitude))//times(scene, force%multiplier))
+        else
+          last = k
+          call add_text(lines, 'load       '//padded('FORCE node '//to_text(scene%mesh%labels(force%node))//' ' &
+                                                     //direction_names(force%component), 24) &
+                        //to_text(force%amplitude)//times(scene, force%multiplier))
+        end if
+      end associate
+    end do
+  end subroutine add_forces
 
   !> Where the node or the point of a probe is in the deck's own mesh, and how far that is from the place asked for.
   pure function place_words(scene, probe) result(words)

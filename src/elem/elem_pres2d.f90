@@ -3,8 +3,8 @@
 !> Walking 1 -> 2 -> 3 the part is on the left; a positive pressure pushes into the part along its
 !> inner normal: F_i = integral phi_i p (-y', x') t dxi, linearised exactly (unsymmetric matrix). The
 !> thickness t of the section is the radius in an axisymmetric scene; in plane stress it is that of the start.
-!> Where p is found (LOADF) the derivative by it is a column of the matrix, and its row f.du, with f as at the start of the step, is
-!> the volume that the side sweeps, over p = 1.
+!> Where p is found (LOADF) the derivative by it is a column of the matrix, and its row is the volume that the side sweeps in the
+!> step, over p = 1: the integral of f.du along straight ways of the nodes, by Simpson's rule, which is exact for it.
 module elem_pres2d
   use elem_api, only: elem_t, instant_t, layout_t, mode_advance, no_variables, of_displacement, of_section, report_t, section_motion
   use elem_load_factor, only: load_factor_place, of_load_factor
@@ -87,7 +87,7 @@ contains
         call add_column(8, dot_product(y(1, :), phi))
         call add_column(9, dot_product(y(2, :), phi))
       end do
-      if (factor > 0) call add_load_factor(unit_force(y, section), unit_force(x(:, :, e), instant%section))
+      if (factor > 0) call add_load_factor(unit_force(y, section))
     end do
 
   contains
@@ -108,14 +108,48 @@ contains
     end function unit_force
 
     !> Column and row of the load factor.
-    subroutine add_load_factor(now, before)
-      real(wp), intent(in) :: now(6), before(6)
+    subroutine add_load_factor(now)
+      real(wp), intent(in) :: now(6)
+      real(wp) :: volume, slopes(9)
 
       if (instant%tangent) stiffness(1:6, factor, e) = now
       if (scene%load_factor%node > 0 .or. instant%mode /= mode_advance) return
-      force(factor, e) = dot_product(before, du(1:6, e))
-      if (instant%tangent) stiffness(factor, 1:6, e) = before
+      call sweep(x(:, :, e), y - x(:, :, e), section - instant%section, volume, slopes)
+      force(factor, e) = volume
+      if (.not. instant%tangent) return
+      stiffness(factor, 1:6, e) = slopes(1:6)
+      if (kinematics%finite .and. scene%plane_state == generalised_plane_strain) stiffness(factor, 7:9, e) = slopes(7:9)
     end subroutine add_load_factor
+
+    !> The volume that the side sweeps, times the amplitude, and its derivatives by displacements and thickness.
+    pure subroutine sweep(places, way, thickening, volume, slopes)
+      real(wp), intent(in) :: places(2, 3), way(2, 3)   !! at the start of the step, and from there to its end [length]
+      real(wp), intent(in) :: thickening(3)             !! of the section in the step
+      real(wp), intent(out) :: volume                   !! [volume]
+      real(wp), intent(out) :: slopes(9)
+      real(wp) :: share, area, shape(3), slope(3), u(2), n(2), z(2, 3), thickness(3), t
+      integer :: i, k
+
+      volume = 0
+      slopes = 0
+      do i = 0, 2
+        share = merge(0.5_wp*i, 0.0_wp, kinematics%finite)
+        z = places + share*way
+        thickness = instant%section + share*thickening
+        do k = 1, size(xi)
+          call line3(xi(k), shape, slope)
+          u = [dot_product(du(1:3, e), shape), dot_product(du(4:6, e), shape)]
+          n = matmul(z, slope)
+          area = group%amplitude*weight(k)*merge(4, 1, i == 1)/6
+          t = area*thickness_at(thickness, matmul(z, shape))
+          area = area*(u(1)*n(2) - u(2)*n(1))
+          volume = volume + t*(u(1)*n(2) - u(2)*n(1))
+          slopes(1:3) = slopes(1:3) + t*(n(2)*shape - share*u(2)*slope) + share*thickness(2)*area*shape
+          slopes(4:6) = slopes(4:6) + t*(-n(1)*shape + share*u(1)*slope) + share*thickness(3)*area*shape
+          slopes(7:9) = slopes(7:9) + share*area*[1.0_wp, matmul(z, shape)]
+        end do
+      end do
+    end subroutine sweep
 
     !> What a change of thickness along a local unknown does to the forces.
     subroutine add_column(column, thickening)

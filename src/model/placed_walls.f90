@@ -68,7 +68,7 @@ contains
     end do
   end subroutine place_walls
 
-  !> Largest distance of nodes of a wall's support from it.
+  !> Largest distance of nodes of a wall's support from it. Other supports may hold its corners too.
   pure function bend_of_line(scene, wall, d) result(bend)
     type(scene_t), intent(in) :: scene
     type(wall_t), intent(in) :: wall
@@ -77,12 +77,8 @@ contains
     integer :: f
 
     bend = 0
-    do f = 1, size(scene%fixations)
-      associate (one => scene%fixations(f))
-        if (one%field /= displacement_field .or. one%component /= wall%component) cycle
-        if (any(one%nodes == wall%node)) bend = max(bend, maxval(abs(d(one%nodes))))
-      end associate
-    end do
+    f = support_of(scene, wall)
+    if (f > 0) bend = maxval(abs(d(scene%fixations(f)%nodes)))
   end function bend_of_line
 
   !> Two supports may hold parts of one line.

@@ -62,6 +62,7 @@ contains
     call find_wall_sides(scene, equations%laws, equations%dofs, scene%mesh%coordinates, equations%wall)
     call list_free_sides(scene, equations%free_sides)
     call find_loose_bodies(scene, equations%dofs, equations%loose)
+    allocate (equations%assembly(size(equations%loose)), source=0)
     allocate (equations%slides(3, size(scene%dies)), source=.false.)
     allocate (equations%seated(size(scene%dies)), source=0.0_wp)
     allocate (equations%way_to_part(2, size(scene%dies)), source=0.0_wp)

@@ -75,7 +75,10 @@ module equations
     logical :: let_go = .false.
     !> Bodies of nodes that supports do not hold, of no size where there is none (loose_bodies).
     integer, allocatable :: loose(:)
-    !> Drag on loose bodies that nothing presses at the start of the present step (ndof): force over motion (resting_bodies).
+    !> Of these, in the present step, the number of the assembly that press on one another and that nothing else presses, 0 where
+    !> something does (nnode; mark_acted_on).
+    integer, allocatable :: assembly(:)
+    !> Drag on these assemblies at the start of the present step (ndof): force over motion (resting_bodies).
     real(wp), allocatable :: drag(:)
     !> It is so many times the usual one in the next attempt at a step: grows while attempts fail.
     real(wp) :: more_drag = 1.0_wp

@@ -118,8 +118,9 @@ contains
   end subroutine enlarge
 
   !> Bodies that a contact with a pressure at the start of a step above a share of the modulus behind it, or one that lasts whatever
-  !> pulls, or a load at the end of the step, acts on.
-  subroutine mark_acted_on(scene, laws, solution, loose, time, least, acted_on)
+  !> pulls, or a load at the end of the step, acts on. Bodies that act on one another are an assembly; that of number 0 has those
+  !> that rigid dies, loads and bodies that are held act on. One on which nothing acts is an assembly by itself.
+  subroutine mark_acted_on(scene, laws, solution, loose, time, least, acted_on, assembly)
     type(scene_t), intent(in) :: scene
     type(law_t), intent(in) :: laws(:)
     type(solution_t), intent(in) :: solution
@@ -127,32 +128,54 @@ contains
     real(wp), intent(in) :: time              !! [time]
     real(wp), intent(in) :: least             !! share of the modulus [-]
     logical, intent(out) :: acted_on(0:)      !! (0:nnode) by the number of the body
-    integer :: g
+    integer, intent(out), optional :: assembly(0:)   !! (0:nnode) number of the assembly of each body
+    integer :: part_of(0:size(loose)), g, k
+    logical :: outside(0:size(loose))
 
     acted_on = .false.
+    outside = .false.
+    part_of = [(k, k=0, size(loose))]
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
         if (group%role /= role_contact .or. group%material == 0) cycle
         associate (lasts => laws(scene%materials(group%material)%law_id)%lasts)
           call mark_contacts(scene, group, solution%groups(g)%committed, loose, &
-                             merge(-1.0_wp, least*group%modulus, lasts), acted_on)
+                             merge(-1.0_wp, least*group%modulus, lasts), acted_on, part_of)
           ! what touches as the run begins is not known yet
-          if (lasts .and. .not. solution%last_step > 0) acted_on(loose(group%connectivity(1, :))) = .true.
+          if (lasts .and. .not. solution%last_step > 0) outside(loose(group%connectivity(1, :))) = .true.
         end associate
       end associate
     end do
-    call mark_loads(scene, loose, time, acted_on)
+    call mark_loads(scene, loose, time, outside)
+    acted_on = acted_on .or. outside
+    if (.not. present(assembly)) return
+    do k = 1, size(loose)
+      if (outside(k)) call join(k, 0, part_of)
+    end do
+    assembly = part_of
   end subroutine mark_acted_on
 
+  !> Two bodies, and all that are in an assembly with them, are in one; that with the number 0 keeps it.
+  pure subroutine join(a, b, part_of)
+    integer, intent(in) :: a, b              !! numbers of bodies
+    integer, intent(inout) :: part_of(0:)    !! (0:nnode)
+    integer :: old, new
+
+    new = min(part_of(a), part_of(b))
+    old = max(part_of(a), part_of(b))
+    if (new /= old) where (part_of == old) part_of = new
+  end subroutine join
+
   !> Bodies on either side of a contact with a point, or a place between points, that bears more than a pressure.
-  pure subroutine mark_contacts(scene, group, state, loose, least, acted_on)
+  pure subroutine mark_contacts(scene, group, state, loose, least, acted_on, part_of)
     type(scene_t), intent(in) :: scene
     type(group_t), intent(in) :: group
     real(wp), intent(in) :: state(:, :, :)   !! (nstate, npoint, nelem)
     integer, intent(in) :: loose(:)
     real(wp), intent(in) :: least            !! below 0 where contact itself will do [stress]
     logical, intent(inout) :: acted_on(0:)
-    integer :: e, p
+    integer, intent(inout) :: part_of(0:)    !! (0:nnode) number of the assembly of each body
+    integer :: e, p, other
     logical :: corners
 
     corners = find_variable(group%variables, 'corner_place') > 0
@@ -162,7 +185,10 @@ contains
         if (.not. presses(state(:, p, e), least, corners)) cycle
         acted_on(loose(group%connectivity(1, e))) = .true.
         ! the sides of a die are of one body; those of a new mesh are not known yet
-        if (group%pairs > 0) acted_on(loose(scene%dies(group%die)%nodes(1, max(1, nint(state(at_piece, p, e)))))) = .true.
+        other = 0
+        if (group%pairs > 0) other = loose(scene%dies(group%die)%nodes(1, max(1, nint(state(at_piece, p, e)))))
+        acted_on(other) = .true.
+        call join(loose(group%connectivity(1, e)), other, part_of)
       end do
     end do
   end subroutine mark_contacts

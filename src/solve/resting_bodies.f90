@@ -14,6 +14,9 @@
 !> that makes: what is pushed resists a little, friction acts, and of all ways that dies leave it one of the shortest is gone, for
 !> any round-off and in any axes. The force is far below those of a body that is strained. It also makes the matrix regular.
 !> Attempts at a step that failed are followed by ones with more of it.
+!>
+!> Bodies that press on one another and on nothing else, as a rivet and its plates that the tools have left, are such a body
+!> together.
 module resting_bodies
   use equations, only: equations_t
   use fields, only: displacement_field
@@ -42,22 +45,23 @@ contains
     type(solution_t), intent(in) :: solution
     real(wp), intent(in) :: time         !! at the end of the step
     real(wp), intent(inout) :: du(:)     !! (ndof) motion of the step [unknown]
-    logical, dimension(0:size(equations%loose)) :: acted_on, pressed
+    logical :: acted_on(0:size(equations%loose)), pressed(0:size(equations%loose))
+    integer :: assembly(0:size(equations%loose))
     real(wp) :: x(2, size(equations%loose)), factor
     integer :: b, k, c
 
     equations%drag = 0
     if (size(equations%loose) == 0) return
     associate (loose => equations%loose, number => equations%dofs%fields(displacement_field)%number)
-      call mark_acted_on(scene, equations%laws, solution, loose, time, light, pressed)
-      if (all(pressed(pack(loose, loose > 0)))) return
+      call mark_acted_on(scene, equations%laws, solution, loose, time, light, pressed, assembly)
+      equations%assembly = assembly(loose)
+      if (all(equations%assembly == 0)) return
       call mark_acted_on(scene, equations%laws, solution, loose, time, 0.0_wp, acted_on)
       equations%drag = volumes_of_nodes(scene, equations, solution)
       x = present_coordinates(scene, solution)
       do b = 0, maxval(loose)
         factor = 0
-        if (b > 0 .and. .not. pressed(b)) &
-          factor = equations%more_drag*drag*modulus_of(scene, equations, b)/square_of_extent(x, loose == b)
+        if (assembly(b) > 0) factor = equations%more_drag*drag*modulus_of(scene, equations, b)/square_of_extent(x, loose == b)
         do k = 1, size(loose)
           if (loose(k) /= b) cycle
           do c = 1, 2
@@ -78,15 +82,16 @@ contains
     equations%more_drag = merge(min(stronger*equations%more_drag, strongest), 1.0_wp, failed)
   end subroutine strengthen_drag
 
-  !> Take the rigid motions of bodies that only their drag resists out of a motion that answers forces which balance each other: but
-  !> for round-off these forces move no body as a whole, and against the drag round-off is a large motion. The strain stays. Rigid
-  !> motions are those that no support bars: translations and, in the plane, the turn.
+  !> Take the rigid motions of bodies that only their drag resists, together where they press on one another, out of a motion that
+  !> answers forces which balance each other: but for round-off these forces move no body as a whole, and against the drag round-off
+  !> is a large motion. The strain stays. Rigid motions are those that no support bars: translations and, in the plane, the turn.
   subroutine remove_rigid_motion(scene, equations, solution, motion, bodies)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(in) :: equations
     type(solution_t), intent(in) :: solution
     real(wp), intent(inout) :: motion(:)          !! (ndof) [unknown]
     logical, intent(in), optional :: bodies(0:)   !! (0:nnode) those it is taken out of, by their numbers; all if not given
+    integer :: part_of(size(equations%loose))
     real(wp) :: x(2, size(equations%loose)), rigid(size(motion))
     logical :: barred(2)
     integer :: b, c
@@ -95,7 +100,9 @@ contains
     if (size(equations%loose) == 0) return
     if (.not. any(equations%drag > 0)) return
     x = present_coordinates(scene, solution)
-    do b = 1, maxval(equations%loose)
+    part_of = equations%assembly
+    if (present(bodies)) part_of = equations%loose
+    do b = 1, maxval(part_of)
       if (present(bodies)) then
         if (.not. bodies(b)) cycle
       end if
@@ -122,12 +129,12 @@ contains
       associate (number => equations%dofs%fields(displacement_field)%number)
         weight = 0
         do k = 1, size(weight)
-          if (equations%loose(k) == b .and. number(1, k) > 0) weight(k) = equations%drag(number(1, k))
+          if (part_of(k) == b .and. number(1, k) > 0) weight(k) = equations%drag(number(1, k))
         end do
         middle = 0
         if (sum(weight) > 0) middle = matmul(x, weight)/sum(weight)
         do k = 1, size(equations%loose)
-          if (equations%loose(k) /= b) cycle
+          if (part_of(k) /= b) cycle
           do c = 1, 2
             if (number(c, k) == 0 .or. axis == 3 - c) cycle
             rigid(number(c, k)) = 1

@@ -215,7 +215,7 @@ def kills(checks, draw, deck, whole, number, seconds, **environment):
 def stops(checks, draw, deck, whole, seconds):
     """Stopped by a signal: exit code 128+n, and the same command goes on."""
     for number in STOPS:
-        out, wait, code = checks.path(f"stop-{number}"), draw.uniform(0.1, 0.6) * seconds, DONE
+        out, wait, code = checks.path(f"stop-{number}"), max(draw.uniform(0.1, 0.6) * seconds, 0.1), DONE
         while code == DONE and wait > 0.05:     # a machine that is quicker now has ended before the signal
             shutil.rmtree(out, ignore_errors=True)
             process = begin(deck, out)
@@ -524,8 +524,31 @@ def full_disk(checks, deck, whole):
             checks.that(result.returncode == MACHINE and 1 <= len(lines) <= 2, f"{what}: exit code 5, in a line", said(result))
             subprocess.run(["mount", "-o", f"remount,size={4 * needed}k", disk], check=True)
             ends_the_same(checks, deck, out, whole, what)
+        larger_mesh(checks, disk, out)
     finally:
         subprocess.run(["umount", disk], check=True)
+
+
+def larger_mesh(checks, disk, out):
+    """Room for the checkpoint once more, but not for a new mesh of many more elements: no fault of the mesh."""
+    deck = write(checks.path("larger.lag"), add_cards(deck_text(UPSETTING).replace("travel 9", "travel 4"),
+                                                      "CKPT 2\nREMSH\n   TIMES 0.1\n   SIZE 0.9 0.9\n   COUNT 300").replace("nx 12", "nx 3")
+                 .replace("ny 18", "ny 4"))
+    whole, part = checks.path("larger"), checks.path("larger-part")
+    cycle(deck, whole)
+    subprocess.run([LAGAMINE, deck, "--out", part, "--quiet"], check=False, stderr=subprocess.DEVNULL)
+    there = sum(-(-os.path.getsize(file) // 4096) * 4 for file in files_of(part))
+    sizes = [os.path.getsize(os.path.join(folder, f"larger.{name}.h5"))/1024 for folder, name in ((part, "ckp"), (whole, "g02.start"))]
+    checks.that(sizes[1] > 1.5*sizes[0], "larger mesh: its file is larger", sizes)
+    for copies in (1.5, 3.6, 4.4, 5.1):
+        what = f"larger mesh: room for {copies} checkpoints"
+        shutil.rmtree(out, ignore_errors=True)
+        subprocess.run(["mount", "-o", f"remount,size={there + int(copies*sizes[0])}k", disk], check=True)
+        result = cycle(deck, out)
+        checks.that(result.returncode == MACHINE and len(result.stderr.splitlines()) <= 2, f"{what}: exit code 5, in a line", said(result))
+        checks.that("refused" not in result.stdout + result.stderr, f"{what}: not refused", said(result))
+        subprocess.run(["mount", "-o", "remount,size=200m", disk], check=True)
+        ends_the_same(checks, deck, out, whole, what)
 
 
 def main():

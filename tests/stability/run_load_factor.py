@@ -120,6 +120,12 @@ def wall(checks):
               f"{bore[top]:.2f}, then down to {found[-1]:.2f}; off {off:.1e}")
         checks.that(off < 1e-3, f"wall-{name}: the rigid plastic pressure to .1 %", f"{off:.2e}")
         checks.that(found[-1] < 0.9*found[top], f"wall-{name}: past the limit", f"{found[-1]} of {found[top]}")
+        if "WORK" in measure:
+            # in steps of any length; 2 pi 2 (bore**2 - 100)/2 of the ring, pi/4 (bore**2 - 100) of the sector
+            turn = 2*math.pi if scene is ROUND else math.pi/4
+            swept = max(abs(turn*(b**2 - 100)/(float(measure.split()[-1].replace("25.*pi", "78.53981634"))*10*t) - 1)
+                        for b, t in zip(bore, run.history["time"]) if t > 0)
+            checks.that(swept < 2e-3 if scene is PLANE else swept < 1e-6, f"wall-{name}: the volume is the one given", f"{swept:.2e}")
         checks.that(sum(run.history["iterations"]) <= 4*len(found), f"wall-{name}: at most 4 iterations a step")
 
 

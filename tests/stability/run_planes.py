@@ -87,7 +87,7 @@ JOIN   left 2 right 4
 CNT2D  left 3 upper -3 film
 CNT2D  right 2 3 upper -3 film
 FIXED  left 1 Y{option}
-FIXED  left 4 X
+FIXED  left 4 {held}
 PROBE  support REACT Y left 1
 {more}""" + PRESS
 FLOOR = """DIE    floor
@@ -98,7 +98,7 @@ LAW    slip COUL2D
 LEFT = """DIE    left
    SEGM   0. 10*{length}   0. -1*{length}
 """
-STEEL = {"young": 200000.0, "flow": "300. 300.", "mu": 0.1, "option": "", "more": "", "n": 6, "m": 6}
+STEEL = {"young": 200000.0, "flow": "300. 300.", "mu": 0.1, "option": "", "held": "X", "more": "", "n": 6, "m": 6}
 # Name, deck, numbers, sides that reach the plane, components of the planes they reach.
 CASES = [("pore", PORE, {"unit": 1, "travel": 3.5}, ("right 4", "top 4"), (0, 1)),
          ("pore-coarse", PORE, {"unit": 1, "travel": 3.5, "n": 4, "m": 4}, ("right 4", "top 4"), (0, 1)),
@@ -276,6 +276,20 @@ def no_walls(checks):
     checks.that("wall       FIXED mid.4 X           mid, arm does not cross x = 0" in said, "pad: the other plane is a wall", said)
 
 
+def clamped(checks):
+    """A part held XY on one side: its corner is in the plane of another support, which is a wall all the same."""
+    numbers = {"travel": 1.5, "mu": 0.3, "held": "XY"}
+    runs = [Run(checks, "clamped", deck(GROOVE, numbers)),
+            Run(checks, "clamped-dies", deck(GROOVE, numbers, **with_dies(numbers, ("right 1",), (1,))))]
+    if not all(run.ok for run in runs):
+        return
+    checks.that(deepest(runs[0], (1,)) <= DEPTH, "clamped: nothing crosses the plane", deepest(runs[0], (1,)))
+    force = [run.history["force_y_upper"][-1] for run in runs]
+    checks.small(abs(force[0]/force[1] - 1), SAME, "clamped: force against a die along the plane")
+    with open(runs[0].out + "/clamped.log", encoding="utf-8") as file:
+        checks.that("is no wall now" not in file.read(), "clamped: not told that there is no wall")
+
+
 def operations(checks):
     """The flank folds in one operation and goes on in the next: the plane stays a wall, and the force is that of one stroke."""
     whole_way = deck(WAIST, {"state": "PLSTN", "width": 9, "travel": 3})
@@ -300,6 +314,7 @@ def main():
     met_anew(checks)
     resumed(checks)
     no_walls(checks)
+    clamped(checks)
     operations(checks)
     checks.end()
 

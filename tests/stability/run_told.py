@@ -8,7 +8,8 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 - Dies that move and meet nothing, bodies that go through each other: in the summary.
 - A body that fills a closed die, which goes on: in the summary, with the change of volume of the closed form.
 - A body that passes the plane in which it is held: in the summary.
-- A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die.
+- A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die. Bodies that hold one
+  another are told together.
 - A steel without kinetics of austenite that is heated above Ac1: in the summary; not one that has them, nor one that only cools.
 - A body that friction alone holds and no longer can, on a table that tilts, between two plates, on another body: with code 3. Not a
   body that friction holds and a limit load ends.
@@ -64,6 +65,7 @@ WRONG = {
     "pressed, and then off the part": ({"1. -2.": "0.5 -2.   1. -2.\nLIC    off\n   0. 0.   0.5 0.   1. 20.\nMOVE   upper X off"},
                                        "no longer faces the part"),
     "floating": ({"FIXED  billet 1 Y\n": TABLE, "30. 15.   -5. 15.": "30. 16.   -5. 16."}, "nothing holds it in Y before it meets"),
+    "pressed where it is held": ({"FIXED  billet 4 X\n": "FIXED  billet 4 XY\n"}, "into a node at 0 15 that supports hold (FIXED)"),
     "pushed from one side": ({"FIXED  billet 1 Y\n": ""}, "dies press it along Y from one side"),
     "slides between dies": ({"FIXED  billet 4 X\n": "", "PHI 0.3": "PHI 0."}, "press it across that and without friction"),
     "free to slide": ({"FIXED  billet 4 X\n": "", "CNT2D  billet 3 upper -3 rough\n": "", "DIE    upper\n": "", "MOVE   upper Y press\n":
@@ -113,6 +115,7 @@ RIGHT = {"a multiplier of two operations": {"END\n": "OPERA  one\nSTOP   0.5\nOP
          "a plate wider than a bore": {"FIXED  billet 1 Y\n": BORE.format(""), "1. -2.": "1. -6."},
          "dies that close": {**PRESSED, "1. -2.": "1. -16."},
          "a die that a force presses": {"FIXED  billet 1 Y\n": TABLE.replace("lower\n", "lower PILOT 0. -1.\n", 1) + "FORCE  lower Y -1. press\n", "1. -2.": "1. -18."},
+         "held XY below": {"FIXED  billet 1 Y\n": "FIXED  billet 1 XY\n"},
          "between two dies": {"FIXED  billet 1 Y\n": TABLE}, "pushed from both sides": {"FIXED  billet 1 Y\n": "PRES2D billet 1 3 1. press\n"},
          "heated and expanding": {**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": ""},
          "heated and pressed": {**HEATED, "LIC    press\n": "PRES2D billet 3 3 1. press\nLIC    press\n", "   0. 0.   1. -2.\n": "   0. 0.   1. 5.\n"},
@@ -443,6 +446,56 @@ def let_go(checks):
                                               for text in said), f"{name}: told" if told else f"{name}: nothing is told", said)
 
 
+PIN = """TITLE  A pin upset in a ring, the dies let them go
+STATE  AXISYM
+KINEM  LOG
+BLOCK  pin PL8LS 4 soft
+   0. 0.   4. 0.   4. 6.   0. 6.
+   4 1.   6 1.
+BLOCK  ring PL8LS 4 hard
+   4.02 0.   8. 0.   8. 5.   4.02 5.
+   4 1.   5 1.
+LAW    soft EPLA
+   70000. 0.33
+   LINEAR 100. 200.
+LAW    hard EPLA
+   200000. 0.3
+   LINEAR 300. 500.
+LAW    film COUL2D
+   PHI 0.1
+DIE    low
+   SEGM   -1. 0.   20. 0.
+DIE    up PILOT 0. 6.
+   SEGM   20. 6.   -1. 6.
+DIE    bore SIDES ring 4
+CNT2D  pin 1 low film
+CNT2D  ring 1 low film
+CNT2D  pin 3 up film
+CNT2D  pin 2 bore film
+FIXED  pin 4 X
+LIC    go
+   0. 0.   1. -0.6   1.3 0.
+MOVE   up Y go
+LIC    down
+   0. 0.   1.05 0.   1.3 -1.
+MOVE   low Y down
+STRAT  0.02 1.E-6 0.03   5 3
+END
+"""
+
+
+def let_go_together(checks):
+    """A pin that has been upset in a ring holds it: together they rest where the dies have let them go, and have no errors of the motion
+    by round-off of that."""
+    run = Run(checks, "pin-and-ring", PIN)
+    if not run.ok:
+        return
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as summary:
+        said = [warning["text"] for warning in warnings_in(json.load(summary))]
+    checks.that(any(text.startswith("pin, ring: at the end nothing else holds them") for text in said), "pin and ring: told", said)
+    checks.small(run.history["path_error_motion"][-1], 0.01, "pin and ring: error of the motion")
+
+
 HEATED_STEEL = '''STEEL  base
 SOURCE 'an example'
 TEMPS  AC1 730 AC3 850 MS 300
@@ -565,6 +618,7 @@ def main():
     full(checks)
     passed_planes(checks)
     let_go(checks)
+    let_go_together(checks)
     heated(checks)
     held(checks)
     small(checks)
