@@ -15,6 +15,7 @@ module failed_step
   use soft_penalties, only: soften_penalties
   use solution, only: solution_t
   use step_outcome, only: outcome_t
+  use step_pace, only: note_failed_attempt
   use step_strategy, only: after_failure
   use text, only: to_text
   use unheld_dies, only: find_unheld_die, unheld_die_t
@@ -51,6 +52,7 @@ contains
     on_probation = is_on_probation(solution%probation)
     unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
+    call note_failed_attempt(outcome%iterations, solution%pace)
     call after_failure(scene, dt, solution%next_step, give_up)
     softer = .false.
     if (.not. (outcome%of_heat .or. outcome%passes_itself)) &

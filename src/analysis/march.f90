@@ -2,12 +2,13 @@
 module march
   use accept_step, only: accept
   use acceptance, only: is_on_probation, note_step
+  use equations, only: solves_heat
   use errors, only: error_t
   use failed_step, only: answer_failure, answer_long_path, note_damped_steps, refuse_mesh
   use heated_steels, only: note_missing_austenite
   use held_steels, only: note_held_steels
   use kinds, only: wp
-  use listing, only: list_event, list_note, list_step, show_progress
+  use listing, only: list_event, list_lines, list_note, list_step, show_progress
   use lost_equilibrium, only: refuse_lost_equilibrium
   use march_start, only: start_march
   use path_record, only: note_attempt
@@ -20,10 +21,11 @@ module march
   use spent_polynomials, only: refuse_spent_polynomials
   use spurious_mode, only: has_mean_dilatation, spurious_limit
   use step_outcome, only: outcome_t
+  use step_pace, only: note_pace
   use step_solves, only: solve_fields
   use step_strategy, only: after_success, choose_step
   use system, only: caught_signal
-  use text, only: to_text
+  use text, only: string_t, to_text
   use unsettled_contact, only: note_unsettled_contact
   use watch_mesh, only: estimate, look_at_mesh, mesh_is_due
   implicit none
@@ -91,13 +93,21 @@ contains
     type(solution_t), intent(inout) :: solution
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: length
+    type(string_t) :: note(1)
+    real(wp) :: length, growth, factor
     logical :: on_probation
 
     length = min(solution%next_step, scene%strategy%largest_step)
     on_probation = is_on_probation(solution%probation)
-    solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain, &
-                                       min(outcome%heat%growth, outcome%path%growth), outcome%patch_difficulty)
+    growth = min(outcome%heat%growth, outcome%path%growth)
+    factor = 1
+    note(1)%s = ''
+    ! longer steps would make errors of temperatures larger
+    if (.not. (on_probation .or. solution%damping > 0 .or. scene%load_factor%multiplier > 0 &
+               .or. solves_heat(scene, run%equations))) &
+      call note_pace(scene%strategy, length, dt, outcome%iterations, growth, solution%pace, factor, note(1)%s)
+    solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain, growth, &
+                                       outcome%patch_difficulty, solution%pace%added, factor)
     call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
     if (allocated(error)) return
     call note_missing_austenite(scene, run%equations%laws, solution)
@@ -106,6 +116,7 @@ contains
     call note_step(solution%probation, length)
     call estimate(scene, run%estimator, run%equations%timers, solution)
     call list_step(run%listing, solution, outcome, run%totals)
+    if (note(1)%s /= '') call list_lines(run%listing, note)
     ! at the end no new mesh is needed; on one made while viscous forces hold the part these would be out of balance
     if (.not. (at_end(scene, solution) .or. solution%damping > 0)) &
       call look_at_mesh(scene, run%equations%timers, run%listing, solution)

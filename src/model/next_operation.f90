@@ -76,6 +76,7 @@ contains
     after%older_step = 0
     after%probation = fresh%probation
     after%crossing = fresh%crossing
+    after%pace = fresh%pace
     after%sunk_group = 0
     after%sunk_depth = 0
     after%sunk_share = 0

@@ -7,6 +7,7 @@ module solution
   use confinement_record, only: confinement_record_t
   use heat_record, only: heat_record_t
   use kinds, only: wp
+  use pace_record, only: pace_t
   use loads, only: multiplier_at, start_t
   use crossing_record, only: crossing_record_t
   use narrow_record, only: narrow_record_t
@@ -57,6 +58,8 @@ module solution
     type(probation_t) :: probation
     !> The last step of a body through itself.
     type(crossing_record_t) :: crossing
+    !> What short steps take.
+    type(pace_t) :: pace
     !> Share of the penalties that follow from an allowed penetration with which contact presses: less than 1 where it bears little
     !> and could not be found with the whole, more where an elastic body bears much (soft_penalties) [-].
     real(wp) :: penalty_share = 1.0_wp

@@ -7,6 +7,7 @@ module visit_solution
   use kinds, only: wp
   use narrow_record, only: narrow_record_t
   use pairs, only: pairs_t
+  use pace_record, only: pace_t
   use path_record, only: path_record_t
   use run_warnings, only: warning_t
   use solution, only: group_state_t, solution_t
@@ -95,6 +96,9 @@ contains
     call visitor%enter('crossing')
     call visit_crossing(visitor, self%crossing)
     call visitor%leave('crossing')
+    call visitor%enter('pace')
+    call visit_pace(visitor, self%pace)
+    call visitor%leave('pace')
     call visitor%enter('estimate')
     call visit_estimate_members(visitor, self%estimate)
     call visitor%leave('estimate')
@@ -254,6 +258,18 @@ contains
     call visitor%member('until', self%until, kept, 'time', low=0.0_wp)
     call visitor%member('thinned', self%thinned, kept)
   end subroutine visit_crossing
+
+  subroutine visit_pace(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(pace_t), intent(inout) :: self
+
+    call visitor%member('added', self%added, kept, low=0)
+    call visitor%member('steps', self%steps, kept, low=0)
+    call visitor%member('iterations', self%iterations, kept, '-', low=0.0_wp)
+    call visitor%member('time', self%time, kept, 'time', low=0.0_wp)
+    call visitor%member('cost', self%cost, kept, '1/time', low=0.0_wp)
+    call visitor%member('settled', self%settled, kept)
+  end subroutine visit_pace
 
   subroutine visit_group_state(visitor, self)
     class(visitor_t), intent(inout) :: visitor

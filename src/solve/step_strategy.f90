@@ -96,21 +96,26 @@ contains
 
   !> Proposal after an accepted step: by its iterations, and no longer than its strain increment and its error in time allow
   !> to foresee. A step shortened to hit a time does not shorten the proposal.
-  pure function after_success(scene, dt, proposed, iterations, strain, growth, added) result(next)
+  pure function after_success(scene, dt, proposed, iterations, strain, growth, added, more, longer) result(next)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt, proposed
     integer, intent(in) :: iterations
     real(wp), intent(in) :: strain   !! largest strain increment of the step
     real(wp), intent(in), optional :: growth   !! largest factor by the error in time
     real(wp), intent(in), optional :: added    !! what counts as iterations beside them
+    integer, intent(in), optional :: more      !! iterations that are aimed at beyond NOPTI (step_pace)
+    real(wp), intent(in), optional :: longer   !! so many times as long as by iterations
     real(wp) :: next
-    real(wp) :: factor, counted
+    real(wp) :: factor, counted, aim
 
     associate (s => scene%strategy)
       counted = max(iterations, 1)
       if (present(added)) counted = counted + added
-      factor = (real(s%nopti, wp)/counted)**(1/s%nalpha)
+      aim = s%nopti
+      if (present(more)) aim = aim + more
+      factor = (aim/counted)**(1/s%nalpha)
       factor = min(max(factor, s%dminmu), s%dmaxmu)
+      if (present(longer)) factor = factor*longer
       next = dt*factor
       if (dt < proposed .and. factor >= 1) next = max(next, min(proposed, s%largest_step))
       if (strain*next > foresight*s%strain_bound*dt) next = foresight*s%strain_bound/strain*dt
