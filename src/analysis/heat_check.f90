@@ -19,8 +19,7 @@ module heat_check
   use solution, only: start_fields
   use state_variables, only: find_variable
   use sheet_sources, only: judge_sheet_sources
-  use steel_numbers, only: judge_steel_numbers
-  use steel_temperatures, only: judge_steel_temperatures
+  use steel_numbers, only: judge_steels
   use steel_units, only: judge_units
   use steels, only: unknown_temperature
   use text, only: add => add_text, string_t, to_text
@@ -66,8 +65,7 @@ contains
     if (.not. lacks_mesh(scene)) call judge_isolated(scene, laws, warnings)
     call judge_torch_powers(scene, laws, warnings)
     call judge_kinetics(scene, warnings)
-    call judge_steel_temperatures(scene, warnings)
-    call judge_steel_numbers(scene, warnings)
+    call judge_steels(scene, warnings)
     call judge_sheet_sources(scene, laws, warnings)
     call judge_hardness(scene, warnings)
     call judge_cycle_heat(scene, laws, warnings)

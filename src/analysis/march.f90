@@ -107,7 +107,7 @@ contains
                .or. solves_heat(scene, run%equations))) &
       call note_pace(scene%strategy, length, dt, outcome%iterations, growth, solution%pace, factor, note(1)%s)
     solution%next_step = after_success(scene, dt, solution%next_step, outcome%first_iterations, outcome%strain, growth, &
-                                       outcome%patch_difficulty, solution%pace%added, factor)
+                                       outcome%patch_difficulty, solution%pace%beyond_nopti, factor)
     call accept(scene, run%equations, dt, outcome, solution, run%totals, error)
     if (allocated(error)) return
     call note_missing_austenite(scene, run%equations%laws, solution)

@@ -2,20 +2,20 @@
 module steel_numbers
   use kinds, only: wp
   use scene, only: scene_t
-  use steel_temperatures, only: top_of
+  use steel_temperatures, only: top_of, words_of_temperatures
   use steels, only: bainite, kinetics_none, phase_count, phase_names, prop_yield, prop_young, steel_t, unknown_temperature
   use temperature_curves, only: curve_at, is_given
   use text, only: add_new_text, string_t, to_text
   implicit none
   private
-  public :: judge_steel_numbers, words_of_numbers
+  public :: judge_steels, words_of_numbers
 
   !> Rates of martensite by temperature [1/K]: 0.011 (D.P. Koistinen, R.E. Marburger, Acta Metall. 7 (1959) 59); 0.0107 to 0.0224
   !> for carbon up to 1.1 % (S.M.C. van Bohemen, Mater. Sci. Technol. 28 (2012) 487); up to 0.06 fitted to single steels.
   real(wp), parameter :: least_beta = 0.002_wp, most_beta = 0.2_wp
   !> Steels yield at less than this share of Young's modulus, as other metals (law_numbers_check).
   real(wp), parameter :: largest_yield = 0.03_wp
-  !> Temperatures by a composition are known to less than this [K].
+  !> Bs by a formula of the composition may lie as much too low [K].
   real(wp), parameter :: scatter_of_formulas = 75.0_wp
   !> Where both are compared [degC].
   real(wp), parameter :: room_temperature = 20.0_wp
@@ -23,15 +23,17 @@ module steel_numbers
 contains
 
   !> Warnings, one line each: of two laws of one steel once.
-  subroutine judge_steel_numbers(scene, warnings)
+  subroutine judge_steels(scene, warnings)
     type(scene_t), intent(in) :: scene
     type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
     integer :: m
 
     do m = 1, size(scene%materials)
-      if (allocated(scene%materials(m)%steel)) call add_new_text(warnings, words_of_numbers(scene%materials(m)%steel))
+      if (.not. allocated(scene%materials(m)%steel)) cycle
+      call add_new_text(warnings, words_of_temperatures(scene%materials(m)%steel))
+      call add_new_text(warnings, words_of_numbers(scene%materials(m)%steel))
     end do
-  end subroutine judge_steel_numbers
+  end subroutine judge_steels
 
   !> What is wrong with the numbers; empty where nothing is.
   pure function words_of_numbers(steel) result(words)

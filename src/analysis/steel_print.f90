@@ -11,6 +11,7 @@ module steel_print
   use hardness_check, only: words_of_range
   use kinetics_check, only: words_of_li
   use steel_numbers, only: words_of_numbers
+  use steel_temperatures, only: words_of_temperatures
   use kinds, only: wp
   use phase_state, only: at_hardness, state_size
   use run_options, only: run_options_t, stem_of
@@ -96,6 +97,8 @@ contains
     if (s /= 'degC:') call add_text(lines, s)
     if (steel%beta > 0) call add_text(lines, 'martensite: 1 - exp(-'//to_text(steel%beta)//' (Ms - T))')
     s = words_of_li(steel)
+    if (s /= '') call add_text(lines, 'WARNING: '//s)
+    s = words_of_temperatures(steel)
     if (s /= '') call add_text(lines, 'WARNING: '//s)
     s = words_of_numbers(steel)
     if (s /= '') call add_text(lines, 'WARNING: '//s)

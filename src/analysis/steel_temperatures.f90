@@ -1,38 +1,26 @@
 !> Temperatures of a steel that no steel has in degC: its file is in kelvin, or in degrees Fahrenheit.
 module steel_temperatures
   use kinds, only: wp
-  use scene, only: scene_t
   use steels, only: bainite, celsius_zero, el_c, el_cr, el_mn, el_mo, el_ni, el_si, first_diffusive, kinetics_none, &
                     last_diffusive, phase_names, steel_t, unknown_temperature
   use temperature_curves, only: curve_none, temperature_curve_t
-  use text, only: add_new_text, string_t, to_text
+  use text, only: to_text
   implicit none
   private
-  public :: judge_steel_temperatures, top_of, words_of_temperatures
+  public :: top_of, words_of_temperatures
 
   !> No steel has more [degC]: Ae1 and Ac1 (pure iron 912, steels of 17 % chromium 900), Ae3 and Ac3 (those with much silicon or
   !> aluminium), Bs and Ms (pure iron 545; 700 cooled by 1e5 K/s).
   real(wp), parameter :: most_a1 = 960.0_wp, most_a3 = 1150.0_wp, most_bs = 830.0_wp, most_ms = 700.0_wp
   !> Curves of ferrite and pearlite end below Ae3, those of bainite below its start [degC].
   real(wp), parameter :: most_curve = 1000.0_wp
-  !> Temperatures by a composition are known to less than this [K].
+  !> A temperature that is farther than this from what a formula gives for the composition is not meant by it [K].
   real(wp), parameter :: scatter = 150.0_wp
 
   !> The steels of Andrews had no more of C, Mn, Si, Ni, Cr and Mo; beyond that carbides hold carbon that does not lower Ms [%].
   real(wp), parameter :: most_of(6) = [0.6_wp, 4.9_wp, 1.9_wp, 5.0_wp, 4.6_wp, 5.4_wp]
 
 contains
-
-  !> Warnings, one line each: of two laws of one steel once.
-  subroutine judge_steel_temperatures(scene, warnings)
-    type(scene_t), intent(in) :: scene
-    type(string_t), allocatable, intent(inout) :: warnings(:)   !! (nwarning)
-    integer :: m
-
-    do m = 1, size(scene%materials)
-      if (allocated(scene%materials(m)%steel)) call add_new_text(warnings, words_of_temperatures(scene%materials(m)%steel))
-    end do
-  end subroutine judge_steel_temperatures
 
   !> What is too hot; empty where nothing is.
   pure function words_of_temperatures(steel) result(words)

@@ -7,7 +7,7 @@ module pace_record
 
   type :: pace_t
     !> Steps aim at so many iterations beyond NOPTI.
-    integer :: added = 0
+    integer :: beyond_nopti = 0
     !> Short steps one after the other, their iterations, in a trial those of failed attempts too, and the time they made [time].
     integer :: steps = 0
     real(wp) :: iterations = 0.0_wp, time = 0.0_wp

@@ -263,7 +263,7 @@ contains
     class(visitor_t), intent(inout) :: visitor
     type(pace_t), intent(inout) :: self
 
-    call visitor%member('added', self%added, kept, low=0)
+    call visitor%member('beyond_nopti', self%beyond_nopti, kept, low=0)
     call visitor%member('steps', self%steps, kept, low=0)
     call visitor%member('iterations', self%iterations, kept, '-', low=0.0_wp)
     call visitor%member('time', self%time, kept, 'time', low=0.0_wp)

@@ -20,7 +20,7 @@ module step_pace
   integer, parameter :: measured = 20
   !> Length that is tried over the present one, where errors let a step grow by more than twice; iterations that steps aim at then,
   !> over NOPTI, and no more than this share of those after which they are cut back.
-  real(wp), parameter :: longer = 8.0_wp, room = 2.0_wp, more = 1.6_wp, most = 0.5_wp
+  real(wp), parameter :: longer = 8.0_wp, room = 2.0_wp, aim = 1.6_wp, most = 0.5_wp
   !> A trial pays where it takes less than this share of the iterations.
   real(wp), parameter :: pays = 0.9_wp
 
@@ -37,12 +37,12 @@ contains
     real(wp), intent(out) :: factor
     character(len=:), allocatable, intent(out) :: words
     real(wp) :: cost
-    integer :: added
+    integer :: beyond
 
     words = ''
     factor = 1
     if (.not. proposed < short*strategy%largest_step) then
-      pace = pace_t(added=pace%added)
+      pace = pace_t(beyond_nopti=pace%beyond_nopti)
       return
     end if
     pace%steps = pace%steps + 1
@@ -52,20 +52,20 @@ contains
     cost = pace%iterations/pace%time
     if (pace%cost > 0) then
       if (cost < pays*pace%cost) then
-        pace = pace_t(added=pace%added)
+        pace = pace_t(beyond_nopti=pace%beyond_nopti)
         return
       end if
-      words = 'as short again, steps take '//to_text(cost, 3)//' iterations over time, before '//to_text(pace%cost, 3) &
+      words = 'as short again, steps take '//to_text(cost, 3)//' iterations per unit of time, before '//to_text(pace%cost, 3) &
               //': they aim at '//to_text(strategy%nopti)//' iterations again'
       pace = pace_t(settled=.true.)
     else if (growth > room) then
-      added = min(nint(more*strategy%nopti), int(most*strategy%max_iterations)) - strategy%nopti
-      if (added <= pace%added) return
-      pace = pace_t(added=added, cost=cost)
+      beyond = min(nint(aim*strategy%nopti), int(most*strategy%max_iterations)) - strategy%nopti
+      if (beyond <= pace%beyond_nopti) return
+      pace = pace_t(beyond_nopti=beyond, cost=cost)
       factor = longer
       words = 'steps are shorter than '//to_text(100*short)//' % of the longest, though none fails, and take '//to_text(cost, 3) &
-              //' iterations over time: one of '//to_text(longer)//' times the length is tried, and they aim at ' &
-              //to_text(strategy%nopti + added)//' iterations from here'
+              //' iterations per unit of time: one of '//to_text(longer)//' times the length is tried, and they aim at ' &
+              //to_text(strategy%nopti + beyond)//' iterations from here'
     end if
   end subroutine note_pace
 
@@ -77,7 +77,7 @@ contains
     if (pace%cost > 0) then
       pace%iterations = pace%iterations + iterations
     else
-      pace = pace_t(added=pace%added, settled=pace%settled)
+      pace = pace_t(beyond_nopti=pace%beyond_nopti, settled=pace%settled)
     end if
   end subroutine note_failed_attempt
 

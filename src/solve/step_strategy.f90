@@ -96,14 +96,14 @@ contains
 
   !> Proposal after an accepted step: by its iterations, and no longer than its strain increment and its error in time allow
   !> to foresee. A step shortened to hit a time does not shorten the proposal.
-  pure function after_success(scene, dt, proposed, iterations, strain, growth, added, more, longer) result(next)
+  pure function after_success(scene, dt, proposed, iterations, strain, growth, added, beyond_nopti, longer) result(next)
     type(scene_t), intent(in) :: scene
     real(wp), intent(in) :: dt, proposed
     integer, intent(in) :: iterations
     real(wp), intent(in) :: strain   !! largest strain increment of the step
     real(wp), intent(in), optional :: growth   !! largest factor by the error in time
     real(wp), intent(in), optional :: added    !! what counts as iterations beside them
-    integer, intent(in), optional :: more      !! iterations that are aimed at beyond NOPTI (step_pace)
+    integer, intent(in), optional :: beyond_nopti   !! iterations that are aimed at beyond NOPTI (step_pace)
     real(wp), intent(in), optional :: longer   !! so many times as long as by iterations
     real(wp) :: next
     real(wp) :: factor, counted, aim
@@ -112,7 +112,7 @@ contains
       counted = max(iterations, 1)
       if (present(added)) counted = counted + added
       aim = s%nopti
-      if (present(more)) aim = aim + more
+      if (present(beyond_nopti)) aim = aim + beyond_nopti
       factor = (aim/counted)**(1/s%nalpha)
       factor = min(max(factor, s%dminmu), s%dmaxmu)
       if (present(longer)) factor = factor*longer
