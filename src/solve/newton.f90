@@ -21,7 +21,7 @@ module newton
                                in_turmoil, is_near, iteration_t, judge, was_given_time, went_round
   use jumped_bodies, only: has_jumped
   use kinds, only: wp
-  use law_api, only: contact_stick
+  use law_api, only: contact_slip
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along
   use nonlinear_elimination, only: take_eliminated
@@ -357,7 +357,7 @@ contains
       manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0 .and. .not. long, &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
       ! a body that contact alone holds slips at all of its points
-      manner%many = size(equations%loose) > 0 .and. .not. any(contact == contact_stick)
+      manner%many = size(equations%loose) > 0 .and. any(contact == contact_slip)
       if (long .and. manner%many .and. solution%last_step > 0) manner%closely = .true.
       if (steep) manner = manner_t(exactly=.true.)
       if (equations%downhill) manner = manner_t(downhill=.true.)
