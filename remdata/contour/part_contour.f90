@@ -97,8 +97,32 @@ contains
     report%largest_shift = maxval([0.0_wp, abs(contours%shift)])
     report%largest_move = maxval([0.0_wp, contours%largest_move])
     report%volume_error = maxval([0.0_wp, abs(contours%volume_after - contours%volume_before)/abs(contours%volume_before)])
+    call drop_closed_holes(contours)
     call refuse_laps(scene, contours%boundary, contours%loop, contours%tags, report%laps, error)
   end subroutine build_contours
+
+  !> Leave out holes whose sides have met all around: cutting off their laps has left a point of them.
+  pure subroutine drop_closed_holes(contours)
+    type(contour_t), allocatable, intent(inout) :: contours(:)   !! (ncontour)
+    type(contour_t), allocatable :: left(:)
+    real(wp) :: extent(size(contours))
+    logical :: stays(size(contours))
+    integer :: k, n
+
+    do k = 1, size(contours)
+      extent(k) = size_of_boundary(contours(k)%boundary)
+    end do
+    stays = extent > closed_within*maxval(extent)
+    if (all(stays)) return
+    allocate (left(count(stays)))
+    n = 0
+    do k = 1, size(contours)
+      if (.not. stays(k)) cycle
+      n = n + 1
+      left(n) = contours(k)
+    end do
+    call move_alloc(left, contours)
+  end subroutine drop_closed_holes
 
   !> Nodes that loops pass more than once: where two of them touch they must not separate.
   pure function repeated_nodes(loops, nnode) result(twice)

@@ -3,6 +3,7 @@
 !> Parts of a body that are groups of their own, as two materials are, have an outline each: their share of the contours and the
 !> seams between them, whose ends are ends of elements of both. How they are divided: outline_sides.
 module body_outlines
+  use bodies, only: elements_at_middles
   use body_seams, only: mark_sets, seams_t
   use contour_volume, only: volume_inside
   use corrected_contours, only: contour_t
@@ -47,9 +48,8 @@ contains
     if (allocated(error)) return
     do c = 1, size(contours)
       body(c) = contours(c)%loop%body
-      if (body(c) == 0) body(c) = c   ! a first mesh: a body is one contour
       in_parts(c) = .false.
-      if (any(of_parts)) in_parts(c) = of_parts(group_of(scene, contours(c)%loop, c))
+      if (any(of_parts)) in_parts(c) = of_parts(group_of(scene, contours(c)%loop))
     end do
     ! numbers of bodies without parts, one after the other
     do n = maxval(body), 1, -1
@@ -70,7 +70,7 @@ contains
         else
           outline%boundaries = [outline%boundaries, c]
         end if
-        outline%group = group_of(scene, contours(c)%loop, c)
+        outline%group = group_of(scene, contours(c)%loop)
         outline%material = material(outline%group)
       end associate
     end do
@@ -152,7 +152,7 @@ contains
     type(contour_t), intent(in) :: contours(:)   !! (ncontour)
     type(error_t), allocatable, intent(out) :: error
     type(seams_t), optional, intent(in) :: seams
-    integer :: s, c, found
+    integer :: sharing(size(scene%mesh%coordinates, 2)), s
     integer, allocatable :: on_seam(:, :)
     logical :: whole(size(scene%mesh%sides))
 
@@ -161,12 +161,9 @@ contains
       allocate (on_seam(size(seams%interfaces), size(whole)))
       call mark_sets(scene%mesh%sides, contours, seams, on_seam, whole)
     end if
+    sharing = elements_at_middles(scene)
     do s = 1, size(scene%mesh%sides)
-      found = 0
-      do c = 1, size(contours)
-        found = found + count(contours(c)%tags%on_set(s, :))
-      end do
-      if (found >= size(scene%mesh%sides(s)%nodes, 2) .or. whole(s)) cycle
+      if (whole(s) .or. all(sharing(scene%mesh%sides(s)%nodes(2, :)) < 2)) cycle
       call fail(error, exit_input, 'remdata: the sides '//scene%mesh%sides(s)%name &
                 //' lie inside a body: a new mesh does not keep them', &
                 'name sides on the contour, or make the mesh of BLOCK cards')

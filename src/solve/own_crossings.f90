@@ -1,4 +1,5 @@
-!> Bodies that pass through themselves: free sides of one body that cross at the end of a step.
+!> Bodies that pass through themselves: free sides of one body that cross at the end of a step, and contours that have turned inside
+!> out in it, as that of a small hole does whose sides have all gone past one another.
 !>
 !> Nothing but contact keeps the sides of a body apart, so a body without it may fold through itself in equilibrium. Sides that
 !> face each other in contact overlap by the depth of contact: where a point of either is in contact, they do not count. Nor does a
@@ -28,8 +29,9 @@ module own_crossings
 
   !> Free sides of all bodies.
   type :: free_sides_t
-    !> Nodes, walked with the body on the left (3, nside); the body of each side, and the group of its element (nside).
-    integer, allocatable :: nodes(:, :), body(:), group(:)
+    !> Nodes, walked with the body on the left (3, nside); the body of each side, the group of its element, and the contour it is of,
+    !> 0 where contours meet in a node (nside).
+    integer, allocatable :: nodes(:, :), body(:), group(:), contour(:)
   end type free_sides_t
 
   !> The first crossing found.
@@ -76,7 +78,35 @@ contains
     if (n == 0) return
     body = bodies_of_nodes(scene)
     sides%body = body(sides%nodes(1, :))
+    call number_contours(sides%nodes, size(sharing), sides%contour)
   end subroutine list_free_sides
+
+  !> Closed contours by their numbers: each side goes on with the one that begins where it ends.
+  pure subroutine number_contours(nodes, nnode, contour)
+    integer, intent(in) :: nodes(:, :)                !! (3, nside)
+    integer, intent(in) :: nnode
+    integer, allocatable, intent(out) :: contour(:)   !! (nside)
+    integer :: begins(nnode), i, n, side
+
+    begins = 0
+    do i = 1, size(nodes, 2)
+      begins(nodes(1, i)) = i
+    end do
+    allocate (contour(size(nodes, 2)), source=0)
+    n = 0
+    do i = 1, size(contour)
+      if (contour(i) /= 0) cycle
+      n = n + 1
+      side = i
+      do while (side /= 0)
+        if (contour(side) /= 0) exit
+        contour(side) = n
+        side = begins(nodes(3, side))
+      end do
+      if (side /= i) where (contour == n) contour = -n
+    end do
+    contour = max(contour, 0)
+  end subroutine number_contours
 
   !> A place where two sides of a body cross at the end of a step: the first one in the order of sides.
   subroutine find_own_crossing(scene, dofs, solution, du, sides, crossing)
@@ -96,6 +126,8 @@ contains
     do i = 1, size(arcs)
       arcs(i)%points = present_nodes(scene, dofs, solution, du, sides%nodes(:, i))
     end do
+    call find_turned_contour(scene, dofs, solution, sides, arcs, crossing)
+    if (crossing%found) return
     call find_meeting_arcs(arcs, pairs)
     do m = 1, size(pairs, 2)
       associate (i => pairs(1, m), k => pairs(2, m))
@@ -110,7 +142,7 @@ contains
           crossing%group = sides%group(i)
           crossing%point = point_at(arcs(i), xi(1, r))
           do s = 1, 2
-            at_start(s)%points = present_nodes(scene, dofs, solution, 0*du, sides%nodes(:, pairs(s, m)))
+            at_start(s)%points = present_nodes(scene, dofs, solution, [real(wp) ::], sides%nodes(:, pairs(s, m)))
           end do
           crossing%thinned = is_behind(at_start, xi(:, r))
           return
@@ -118,6 +150,54 @@ contains
       end associate
     end do
   end subroutine find_own_crossing
+
+  !> The first contour around which the area has changed its sign in the step, where none of its nodes is in contact. Area: that on
+  !> the left of the sides, half the integral of x dy - y dx over parabolas.
+  subroutine find_turned_contour(scene, dofs, solution, sides, arcs, crossing)
+    type(scene_t), intent(in) :: scene
+    type(dofs_t), intent(in) :: dofs
+    type(solution_t), intent(in) :: solution
+    type(free_sides_t), intent(in) :: sides
+    type(offset_parabola_t), intent(in) :: arcs(:)   !! of the sides at the end of the step
+    type(own_crossing_t), intent(inout) :: crossing
+    real(wp) :: before(maxval(sides%contour)), after(maxval(sides%contour))
+    integer :: first(maxval(sides%contour)), c, i
+    logical :: held(size(scene%mesh%coordinates, 2))
+
+    before = 0
+    after = 0
+    first = 0
+    do i = 1, size(arcs)
+      c = sides%contour(i)
+      if (c == 0) cycle
+      if (first(c) == 0) first(c) = i
+      associate (origin => arcs(first(c))%points(:, 1))
+        before(c) = before(c) + area_beside(present_nodes(scene, dofs, solution, [real(wp) ::], sides%nodes(:, i)), origin)
+        after(c) = after(c) + area_beside(arcs(i)%points, origin)
+      end associate
+    end do
+    if (.not. any(before*after < 0)) return
+    held = nodes_in_contact(scene, solution)
+    do c = 1, size(first)
+      if (.not. before(c)*after(c) < 0) cycle
+      if (any([(sides%contour(i) == c .and. any(held(sides%nodes(:, i))), i=1, size(arcs))])) cycle
+      crossing%found = .true.
+      crossing%group = sides%group(first(c))
+      crossing%point = arcs(first(c))%points(:, 2)
+      crossing%thinned = before(c) > 0
+      return
+    end do
+  end subroutine find_turned_contour
+
+  !> Area between a parabola and an origin [length^2].
+  pure function area_beside(points, origin) result(area)
+    real(wp), intent(in) :: points(2, 3), origin(2)   !! [length]
+    real(wp) :: area
+
+    associate (a => points(:, 1) - origin, m => points(:, 2) - origin, b => points(:, 3) - origin)
+      area = 0.5_wp*cross(a, b) + 2*cross(m - a, b - a)/3
+    end associate
+  end function area_beside
 
   !> The place on the second side is behind the one on the first, on the side of the body.
   pure function is_behind(arcs, xi) result(yes)
@@ -130,17 +210,18 @@ contains
     end associate
   end function is_behind
 
-  !> Nodes of a side at the end of the step [length].
+  !> Nodes of a side at the end of the step, or at its start where no motion is given [length].
   pure function present_nodes(scene, dofs, solution, du, nodes) result(x)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
     type(solution_t), intent(in) :: solution
-    real(wp), intent(in) :: du(:)
+    real(wp), intent(in) :: du(:)   !! (ndof) or none [unknown]
     integer, intent(in) :: nodes(3)
     real(wp) :: x(2, 3)
     integer :: i, c
 
     x = scene%mesh%coordinates(:, nodes) + solution%fields(displacement_field)%value(:, nodes)
+    if (size(du) == 0) return
     associate (number => dofs%fields(displacement_field)%number)
       do i = 1, 3
         do c = 1, 2
