@@ -78,7 +78,7 @@ contains
     integer :: c
 
     do c = 1, size(contours)
-      of_body(c) = group_of(scene, contours(c)%loop, c) == cut%group
+      of_body(c) = group_of(scene, contours(c)%loop) == cut%group
     end do
     before = total_volume(contours, of_body, solution%fields(section_field)%value(:, 1))
     if (is_trim(cut)) then
@@ -88,7 +88,7 @@ contains
     end if
     if (allocated(error)) return
     call replace_contours(scene, solution, cut, of_body, pieces, contours)
-    record%volume = before - total_volume(contours, [(group_of(scene, contours(c)%loop, c) == cut%group, c=1, size(contours))], &
+    record%volume = before - total_volume(contours, [(group_of(scene, contours(c)%loop) == cut%group, c=1, size(contours))], &
                                           solution%fields(section_field)%value(:, 1))
     if (is_trim(cut) .and. .not. record%volume > nothing*before) &
       call fail(error, exit_input, 'TRIM '//scene%groups(cut%group)%name//': the line from '//point_text(cut%line(1:2))//' to ' &

@@ -9,14 +9,13 @@ module loop_group
 contains
 
   !> Group of the body inside a contour.
-  pure function group_of(scene, loop, number) result(group)
+  pure function group_of(scene, loop) result(group)
     type(scene_t), intent(in) :: scene
-    type(loop_t), intent(in) :: loop
-    integer, intent(in) :: number   !! of the contour, of which a first mesh has one for each body
+    type(loop_t), intent(in) :: loop   !! without elements for a first mesh: its body is the number of the card
     integer :: group
 
     if (size(loop%element) == 0) then
-      group = scene%remesher%contours(number)%group
+      group = scene%remesher%contours(loop%body)%group
       return
     end if
     group = group_of_element(scene, loop%element(1))

@@ -40,7 +40,7 @@ contains
 
     allocate (points(size(scene%remesher%marks)))
     do c = 1, size(contours)
-      on(:, c) = bodies_at(scene, contours(c), c)
+      on(:, c) = bodies_at(scene, contours(c))
     end do
     do k = 1, size(points)
       associate (mark => scene%remesher%marks(k))
@@ -76,16 +76,15 @@ contains
   end subroutine find_points
 
   !> Groups whose elements are inside a contour; that of its card when it has none yet.
-  pure function bodies_at(scene, contour, number) result(on)
+  pure function bodies_at(scene, contour) result(on)
     type(scene_t), intent(in) :: scene
     type(contour_t), intent(in) :: contour
-    integer, intent(in) :: number   !! among the contours
     logical :: on(size(scene%groups))
     integer :: g, last
 
     on = .false.
     if (size(contour%loop%sides, 2) == 0) then
-      on(scene%remesher%contours(number)%group) = .true.
+      on(scene%remesher%contours(contour%loop%body)%group) = .true.
       return
     end if
     last = 0

@@ -46,7 +46,7 @@ contains
     integer :: c, g
 
     do c = 1, size(contours)
-      material(c) = count([(is_solid(scene%groups(g)), g=1, group_of(scene, contours(c)%loop, c))])
+      material(c) = count([(is_solid(scene%groups(g)), g=1, group_of(scene, contours(c)%loop))])
     end do
   end function materials_of_contours
 

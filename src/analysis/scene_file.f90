@@ -195,6 +195,7 @@ contains
           call json%begin_object()
           call json%add('group', contour%group)
           call json%add('rows', contour%row)
+          call json%add('loops', contour%loop)
           call json%begin_array('pieces')
           do i = 1, size(contour%pieces, 3)
             call json%item(reshape(contour%pieces(:, :, i), [6]))

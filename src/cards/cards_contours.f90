@@ -1,6 +1,7 @@
 !> BODY: a body by its contour, of which the remesher makes the first mesh.
 module cards_contours
   use cards_mesh, only: read_body_head
+  use contour_loops, only: check_loops
   use deck_cursor, only: cursor_t
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t, location_t
@@ -8,7 +9,6 @@ module cards_contours
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, mesh_parts_t
   use piece_rows, only: ends_meet, piece_words, read_piece
-  use remesh_defaults, only: area_in
   use remesher_options, only: has_contours
   use scene_draft, only: close_card, draft_t, head_location, words_of
   use text, only: string_t, to_text
@@ -49,44 +49,56 @@ contains
     allocate (draft%scene%remesher%contours, source=contours(:n))
   end subroutine read_contours
 
-  !> The rows: pieces end to end and around, the part on their left.
+  !> The rows: pieces end to end and around, the part on their left. Where they have come back to where they began, the next row
+  !> begins a hole.
   subroutine read_chain(cursor, nrow, contour)
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: nrow
     type(contour_card_t), intent(inout) :: contour
     type(string_t), allocatable :: forms(:)
-    integer, allocatable :: row(:)
+    integer, allocatable :: row(:), loop(:)
     real(wp), allocatable :: pieces(:, :, :)
-    integer :: ends(max(nrow, 1))
-    integer :: form, i, k, n
+    integer :: ends(max(nrow, 1)), loops(max(nrow, 1))
+    logical :: closed
+    integer :: first, form, i, k, n
 
     call words_of(piece_words, forms)
-    if (allocated(contour%pieces)) deallocate (contour%pieces, contour%row)
     allocate (pieces(2, 3, 0))
     n = 0
+    first = 1
+    closed = .false.
+    loops = 1
     do k = 1, max(nrow, 1)
+      if (closed) then
+        first = n + 1
+        loops(k:) = loops(k) + 1
+      end if
       call cursor%next_row('one of '//piece_words//' and its points')
       call cursor%name('one of '//piece_words, forms, form)
-      if (form > 0) call read_piece(cursor, form, n, pieces)
+      if (form > 0) call read_piece(cursor, form, n, pieces, anywhere=closed)
       ends(k) = n
+      closed = n > first
+      if (closed) closed = ends_meet(pieces(:, :, first:n))
+      if (closed) pieces(:, 3, n) = pieces(:, 1, first)
     end do
-    contour%pieces = pieces(:, :, :n)
-    allocate (row(n))
+    allocate (row(n), loop(n))
     i = 0
     do k = 1, size(ends)
       row(i + 1:ends(k)) = k
+      loop(i + 1:ends(k)) = loops(k)
       i = ends(k)
     end do
+    contour%pieces = pieces(:, :, :n)
     call move_alloc(row, contour%row)
+    call move_alloc(loop, contour%loop)
     call cursor%end_row()
     if (cursor%failed()) return
-    if (.not. ends_meet(contour%pieces)) then
-      call cursor%fail('the contour must end where it began, at '//to_text(contour%pieces(1, 1, 1), 10)//' ' &
-                       //to_text(contour%pieces(2, 1, 1), 10))
-    else if (.not. area_in(contour%pieces) > 0) then
-      call cursor%fail('the part must be on the left of its contour: give the pieces the other way round')
+    if (closed) then
+      call check_loops(cursor, contour)
+    else
+      call cursor%fail('the contour must end where it began, at '//to_text(pieces(1, 1, first), 10)//' ' &
+                       //to_text(pieces(2, 1, first), 10))
     end if
-    contour%pieces(:, 3, n) = contour%pieces(:, 1, 1)
   end subroutine read_chain
 
   !> Its sets of sides are empty until there is a mesh.

@@ -21,18 +21,23 @@ module piece_rows
 
 contains
 
-  !> A piece: its points, for an arc its tolerance. It comes after the first `n` of `pieces`, which has room for more of them.
-  subroutine read_piece(cursor, form, n, pieces)
+  !> A piece: its points, for an arc its tolerance. It comes after the first `n` of `pieces`, which has room for more of them, and
+  !> begins where the last one ended, or `anywhere`.
+  subroutine read_piece(cursor, form, n, pieces, anywhere)
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: form
     integer, intent(inout) :: n
     real(wp), allocatable, intent(inout) :: pieces(:, :, :)   !! (2, 3, n or more) [length]
+    logical, intent(in), optional :: anywhere
+    logical :: goes_on
     real(wp) :: first(2), middle(2), last(2), tolerance, gap, extent, share
     real(wp), allocatable :: more(:, :, :)
     character(len=:), allocatable :: message
 
     call read_xy(cursor, 'the first point', first)
-    if (n > 0 .and. .not. cursor%failed()) then
+    goes_on = n > 0
+    if (present(anywhere)) goes_on = goes_on .and. .not. anywhere
+    if (goes_on .and. .not. cursor%failed()) then
       gap = length_of(first - pieces(:, 3, n))
       extent = maxval(abs(first))
       ! seldom, so that the cost does not grow with the square of the number of pieces

@@ -214,7 +214,7 @@ def body(examples):
     """A contour with its rows and zones, and the first mesh."""
     text = examples.of("BODY")
     scene = examples.scene(text)
-    pieces, rows = scene.contours["bracket"]
+    pieces, rows, _ = scene.contours["bracket"]
     fig, axes = figure(1, 2, (9.0, 4.0))
     for panel in axes.flat:
         size = frame(panel, pieces.reshape(-1, 2))

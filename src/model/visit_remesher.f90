@@ -139,6 +139,7 @@ contains
     call visitor%member('group', self%group, kept, low=1)
     call visitor%member('pieces', self%pieces, kept, '2, 3, piece', 'length')
     call visitor%member('side', self%row, kept, 'piece', low=1)
+    call visitor%member('loop', self%loop, kept, 'piece', low=1)
     call visitor%member('smallest', self%smallest, kept, 'length', low=0.0_wp)
     call visitor%member('largest', self%largest, kept, 'length', low=0.0_wp)
   end subroutine visit_contour_card

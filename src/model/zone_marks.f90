@@ -36,12 +36,13 @@ module zone_marks
     integer :: group = 0, marks(4) = 0
   end type zone_card_t
 
-  !> A BODY card: a closed contour traversed with the part on its left.
+  !> A BODY card: closed contours traversed with the part on their left, the outer one and those of holes.
   type :: contour_card_t
     integer :: group = 0
-    !> Parabolas (2, 3, npiece) [length], and the row of the card each comes of: the number of its side of the body.
+    !> Parabolas (2, 3, npiece) [length], the row of the card each comes of: the number of its side of the body; and the contour it
+    !> is of, 1 is the outer one.
     real(wp), allocatable :: pieces(:, :, :)
-    integer, allocatable :: row(:)
+    integer, allocatable :: row(:), loop(:)
     !> Sizes of its elements where bodies have their own; 0: those of all bodies [length].
     real(wp) :: smallest = 0.0_wp, largest = 0.0_wp
   end type contour_card_t

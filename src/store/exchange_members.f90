@@ -94,6 +94,8 @@ contains
       call require(file, place//'/side', size(options%contours(k)%row) > 0, 'is empty')
       call require(file, place//'/pieces', size(options%contours(k)%pieces, 3) == size(options%contours(k)%row), &
                    'has not as many entries as '//place//'/side')
+      call require(file, place//'/loop', size(options%contours(k)%loop) == size(options%contours(k)%row), &
+                   'has not as many entries as '//place//'/side')
     end do
   end subroutine check_remesher
 

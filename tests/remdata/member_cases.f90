@@ -211,7 +211,7 @@ contains
                                 kept=[0.6_wp, 0.7_wp])
         options%zones(1) = zone_card_t(name='zone', group=2, marks=[1, 1, 1, 1])
         options%contours(1) = contour_card_t(group=2, pieces=reshape([1, 2, 3, 4, 5, 6]*0.5_wp, [2, 3, 1]), row=[4], &
-                                               smallest=0.03_wp, largest=0.7_wp)
+                                               loop=[1], smallest=0.03_wp, largest=0.7_wp)
       end associate
       scene%remesh%estimate = .true.
     end subroutine fill_options

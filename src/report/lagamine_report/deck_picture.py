@@ -5,7 +5,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
 
 from .deck_scene import COMPONENTS, DISPLACEMENT, Driven, Scene, side_label
 from .geometry import all_sides, die_curve, element_thickness, hatching, line3, part_thickness, side_curves
@@ -24,7 +25,7 @@ class DeckView:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        points = [scene.x] + [pieces.reshape(-1, 2) for pieces, _ in scene.contours.values()]
+        points = [scene.x] + [pieces.reshape(-1, 2) for pieces, _, _ in scene.contours.values()]
         every = np.vstack(points)
         self.low, self.high = every.min(axis=0), every.max(axis=0)
         self.size = float((self.high - self.low).max())
@@ -38,8 +39,8 @@ class DeckView:
         found = [self.size]
         for group in self.scene.bodies():
             if group["name"] in self.scene.contours:
-                curve = self.scene.contours[group["name"]][0][:, 0]
-                after = np.roll(curve, -1, axis=0)
+                pieces = self.scene.contours[group["name"]][0]
+                curve, after = pieces[:, 0], pieces[:, 2]
                 found.append(abs((curve[:, 0] * after[:, 1] - curve[:, 1] * after[:, 0]).sum()) / max(np.hypot(*(after - curve).T).sum(), 1e-300))
             elif len(group["nodes"]):
                 found.append(part_thickness(self.scene.x, group["nodes"], all_sides(group["nodes"])[1]))
@@ -89,10 +90,11 @@ class DeckView:
             law = f", {group['law']}" if "law" in group else ""
             names.append(group["name"])
             if group["name"] in self.scene.contours:
-                pieces, rows = self.scene.contours[group["name"]]
-                curve = np.einsum("pk,skd->spd", line3(np.linspace(-1, 1, 17)), pieces).reshape(-1, 2)
-                self.axes.fill(*curve.T, color=colour, lw=0)
-                self.axes.plot(*curve.T, color=INK, lw=self.width(1.2), zorder=3)
+                pieces, rows, loops = self.scene.contours[group["name"]]
+                curves = [np.einsum("pk,skd->spd", line3(np.linspace(-1, 1, 17)), pieces[loops == loop]).reshape(-1, 2) for loop in np.unique(loops)]
+                self.axes.add_artist(PathPatch(Path.make_compound_path(*[Path(curve, closed=True) for curve in curves]), color=colour, lw=0))
+                for curve in curves:
+                    self.axes.plot(*curve.T, color=INK, lw=self.width(1.2), zorder=3)
                 for row in np.unique(rows):
                     self._number(str(row), pieces[rows == row])
                 words = f"{group['name']}: by its contour, no mesh yet{law}"

@@ -44,7 +44,7 @@ class Scene:
             if "nodes" in group:
                 group["nodes"] = np.array(group["nodes"], dtype=int) - 1
         self.dies = [(item["name"], item["deformable"], np.array(item["pilot"]), np.array(item["pieces"]).reshape(-1, 3, 2)) for item in held["dies"]]
-        self.contours = {self.groups[item["group"] - 1]["name"]: (np.array(item["pieces"]).reshape(-1, 3, 2), np.array(item["rows"]))
+        self.contours = {self.groups[item["group"] - 1]["name"]: (np.array(item["pieces"]).reshape(-1, 3, 2), np.array(item["rows"]), np.array(item["loops"]))
                          for item in held["contours"]}
 
     def bodies(self) -> List[dict]:
@@ -66,7 +66,7 @@ class Scene:
         name, _, numbers = label.partition(".")
         if name not in self.contours or not numbers:
             return np.zeros((0, 3, 2))
-        pieces, rows = self.contours[name]
+        pieces, rows, _ = self.contours[name]
         return pieces[np.isin(rows, [int(word) for word in numbers.split("+") if word.isdigit()])]
 
     def zone_places(self) -> Dict[int, np.ndarray]:
@@ -90,7 +90,7 @@ class Scene:
     def outline(self) -> np.ndarray:
         """Chords of the outline (chord, 2, 2), of meshes and of contours."""
         from .geometry import all_sides, line3
-        curves = [np.einsum("pk,skd->spd", line3(np.linspace(-1, 1, 9)), pieces) for pieces, _ in self.contours.values()]
+        curves = [np.einsum("pk,skd->spd", line3(np.linspace(-1, 1, 9)), pieces) for pieces, _, _ in self.contours.values()]
         nodes = [group["nodes"] for group in self.bodies() if len(group["nodes"])]
         if nodes:
             sides = all_sides(np.concatenate(nodes))[1]
