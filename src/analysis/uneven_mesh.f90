@@ -1,7 +1,7 @@
 !> Sizes of elements that are seldom meant: neighbours of unlike sizes, and elements much longer than wide.
 !>
 !> The length of an element across a side is that between the middles of this side and of the one opposite. Where it differs much
-!> from that of the neighbour the coarser one decides the error there, and the finer one is of no use: mostly a ratio on a BLOCK card
+!> from that of the neighbour the coarser one decides the error there, and the finer one is of no use: mostly the ratio on a BLOCK
 !> was taken for that of neighbours.
 module uneven_mesh
   use kinds, only: wp
