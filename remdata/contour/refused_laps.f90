@@ -1,5 +1,6 @@
 !> Why contours that cross themselves or each other get no new mesh, and what to try.
 module refused_laps
+  use bodies, only: bodies_of_nodes
   use boundary_curves, only: boundary_curve_t
   use boundary_sides, only: loop_t
   use contour_laps, only: find_laps, lap_t
@@ -26,7 +27,7 @@ contains
     integer, allocatable :: on_die(:, :)
     logical, allocatable :: faces(:, :, :)
     character(len=:), allocatable :: place, plane
-    integer :: bodies(2), k, i, g
+    integer :: groups(2), bodies(2), body_of(size(scene%mesh%coordinates, 2)), k, i, g
 
     allocate (on_die(maxval([1, (size(loops(k)%sides, 2), k=1, size(loops))]), size(loops)), source=0)
     allocate (faces(size(scene%dies), size(on_die, 1), size(loops)), source=.false.)
@@ -41,20 +42,23 @@ contains
     call find_laps(boundaries, on_die, faces, laps)
     if (size(laps) == 0) return
     place = 'x = '//to_text(laps(1)%point(1))//', y = '//to_text(laps(1)%point(2))
-    bodies = [(body_beside(laps(1)%boundaries(k), laps(1)%arcs(k)), k=1, 2)]
+    groups = [(group_beside(laps(1)%boundaries(k), laps(1)%arcs(k)), k=1, 2)]
+    ! groups that are joined are one body
+    body_of = bodies_of_nodes(scene)
+    bodies = [(body_of(scene%groups(groups(k))%connectivity(1, 1)), k=1, 2)]
     plane = plane_beside(scene, laps(1)%point)
     if (bodies(1) /= bodies(2)) then
-      call fail(error, exit_no_convergence, scene%groups(bodies(1))%name//' and '//scene%groups(bodies(2))%name// &
+      call fail(error, exit_no_convergence, scene%groups(groups(1))%name//' and '//scene%groups(groups(2))%name// &
                 ' have gone through each other, at '//place//': their sides there are in no contact with each other', &
                 'name these sides of the one body in a die, DIE name SIDES place, and those of the other in its CNT2D')
     else if (len(plane) > 0 .and. wall_beside(scene, laps(1)%point)) then
       call fail(error, exit_no_convergence, &
-                'the contour folds over itself on the plane '//plane//' in which '//scene%groups(bodies(1))%name// &
+                'the contour folds over itself on the plane '//plane//' in which '//scene%groups(groups(1))%name// &
                 ' is held, at '//place, &
                 'remesh earlier, or with smaller elements (SIZE), before the sides that lie on the plane fold')
     else if (len(plane) > 0) then
       call fail(error, exit_no_convergence, &
-                'the contour folds onto the plane '//plane//' in which '//scene%groups(bodies(1))%name//' is held, at '//place// &
+                'the contour folds onto the plane '//plane//' in which '//scene%groups(groups(1))%name//' is held, at '//place// &
                 ': give a DIE along it and a CNT2D of the sides that reach it', &
                 'a plane of symmetry has the mirror image there, but a support holds its own side alone')
     else
@@ -66,15 +70,15 @@ contains
 
   contains
 
-    !> The body behind an arc, by its group.
-    pure function body_beside(boundary, arc) result(group)
+    !> The group of elements behind an arc.
+    pure function group_beside(boundary, arc) result(group)
       integer, intent(in) :: boundary, arc
       integer :: group
 
       associate (elements => loops(boundary)%element)
         group = group_of_element(scene, elements(min(boundaries(boundary)%arcs(arc)%side, size(elements))))
       end associate
-    end function body_beside
+    end function group_beside
 
   end subroutine refuse_laps
 

@@ -48,7 +48,7 @@ contains
 
     ! in the first of steps that do so the sides are far enough apart to tell whether the body is between them
     if (outcome%passes_itself .and. .not. solution%time < solution%crossing%until) &
-      solution%crossing = crossing_record_t(dt, solution%time + dt, outcome%thins_out)
+      solution%crossing = crossing_record_t(dt, solution%time + dt, outcome%thins_out, solution%crossing%remeshed)
     on_probation = is_on_probation(solution%probation)
     unheld = find_unheld_die(scene, run%equations, solution, index(outcome%reason, 'singular') > 0)
     solution%cutbacks = solution%cutbacks + 1
@@ -82,8 +82,11 @@ contains
       call refuse_mesh(scene, solution, outcome, run, error)
       return
     end if
-    call answer_distress(scene, merge(0, cutbacks, solution%damping > 0), give_up, outcome%passes_itself, run%listing, solution)
+    ! the mesh was made as sides met on the one before, and has the same sides: as a hole closes, more of them meet on each mesh
+    if (.not. (folds .and. solution%crossing%remeshed)) &
+      call answer_distress(scene, merge(0, cutbacks, solution%damping > 0), give_up, outcome%passes_itself, run%listing, solution)
     if (mesh_is_due(solution)) then
+      solution%crossing%remeshed = outcome%passes_itself
       if (on_probation) call pass_probation(scene, run%stem, run%listing, solution, error)
       if (.not. allocated(error)) call save_all(scene, solution, run, error)
     else if (folds) then

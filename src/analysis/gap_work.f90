@@ -4,13 +4,18 @@
 !> lay on, the motion du of the die goes on without it: on the motion of the die against the side contact took
 !> -f(n).(du_die - du_side)/2 by the rule, and in truth what its penalties gave back (contact_work). The difference belongs to
 !> neither the part nor its contact. Without it the work of a die that lifts off grows with the length of the step.
+!>
+!> f is the force that acted: of a point beyond a corner of its die what is left of its pressure there (corner_release), that may be
+!> a thousandth of it.
 module gap_work
   use axis_contact, only: area_at_corner, share_at_corner
+  use closest_point, only: closest_point_t
   use contact_areas, only: area_of_point
   use contact_point, only: penalties
   use contact_state, only: at_between, at_piece, at_pressure, at_status, at_tau, at_xi, contact_block
   use contact_work, only: kept_work
   use control_point_contact, only: control_shares
+  use corner_release, only: release_t, slide_beyond, slide_past_corner
   use corner_weights, only: corner_length
   use dies, only: is_deformable
   use edge_states, only: interval_at_start
@@ -90,9 +95,9 @@ contains
         do p = 1, size(xi)
           area = area_of_point(group%rule, xi, weight, p, solution%fields(section_field)%value(:, 1), x(:, :3, e))
           if (is_control_point(group%rule, p)) then
-            call add_point(before(:n, p, e), after(:n, p, e), xi(p), area, shares=control_shares)
+            call add_point(before(:n, p, e), after(:n, p, e), xi(p), area, 1.0_wp, shares=control_shares)
           else
-            call add_point(before(:n, p, e), after(:n, p, e), xi(p), area)
+            call add_point(before(:n, p, e), after(:n, p, e), xi(p), area, 1.0_wp)
           end if
           if (.not. corners) cycle
           if (group%pairs > 0) then
@@ -102,37 +107,64 @@ contains
                          area_at_corner(before(2*n + 1, p, e), corner_length(xi, p, group%pairs > 0), &
                                         solution%fields(section_field)%value(:, 1), x(:, :3, e), &
                                         side_length(scene, group%connectivity(:, e))), &
-                         share=share_at_corner(before(2*n + 1, p, e), group%pairs > 0))
+                         share_at_corner(before(2*n + 1, p, e), group%pairs > 0))
         end do
       end do
     end associate
 
   contains
 
-    subroutine add_point(old, now, place, area, shares, share)
+    subroutine add_point(old, now, place, area, share, shares)
       real(wp), intent(in) :: old(:), now(:), place, area
+      real(wp), intent(in) :: share                 ! of the pressure and friction of a corner that acted
       real(wp), intent(in), optional :: shares(3)   ! of the nodes in its motion
-      real(wp), intent(in), optional :: share       ! of its pressure and friction that acted
       real(wp) :: phi(3), dphi(3), tangent(2), traction(2), penalty(2), side, acted
 
       if (.not. opens(old(at_status), now(at_status))) return
       associate (group => scene%groups(g), side_of => x(:, :3, e))
         call line3(place, phi, dphi)
+        side = side_length(scene, group%connectivity(:, e))
+        acted = share*released_share(scene, solution, group, old, matmul(side_of, phi), side, present(shares))
         if (present(shares)) phi = shares
-        acted = 1
-        if (present(share)) acted = share
         tangent = tangent_of_die(scene, solution, group, old, matmul(side_of, dphi))
         ! walking along the die the part is on the left: the inner normal of the die is on the right
         traction = acted*((old(at_pressure) - old(at_between))*[tangent(2), -tangent(1)] + old(at_tau)*tangent)
-        side = side_length(scene, group%connectivity(:, e))
         penalty = penalties(scene%materials(group%material), group, side, solution%penalty_share)
         work = work + area &
                *(0.5_wp*dot_product(traction, motion_of_die(scene, solution, group, old, matmul(side_of, phi)) - matmul(du, phi)) &
-                 + kept_work(old, now, penalty, [acted, acted]))
+                 + kept_work(old, now, penalty, [share, share]))
       end associate
     end subroutine add_point
 
   end subroutine work_of_group
+
+  !> Share of its pressure that a point of a side had at the start of the step, beyond a corner of its rigid die; 1 where it was on
+  !> a face, or was a corner itself. (With dies of sides hardly any pressure is left at the end of that way: edge_release.)
+  pure function released_share(scene, solution, group, state, x, length, of_control_point) result(share)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    type(group_t), intent(in) :: group
+    real(wp), intent(in) :: state(:)   !! (nstate) of the point at the start of the step [unit of each component]
+    real(wp), intent(in) :: x(2)       !! then; of the middle node for a control point [length]
+    real(wp), intent(in) :: length     !! of the side [length]
+    logical, intent(in) :: of_control_point
+    real(wp) :: share
+    real(wp) :: y(2), pilot(3)
+    type(closest_point_t) :: closest
+    type(release_t) :: release
+
+    share = 1
+    if (is_deformable(scene%dies(group%die)) .or. nint(state(at_piece)) == 0) return
+    pilot = solution%fields(pilot_field)%value(:, group%die) - solution%fields(pilot_field)%last_increment(:, group%die)
+    y = turned(x - pilot(1:2), -pilot(3))
+    if (of_control_point) then
+      closest%piece = nint(state(at_piece))
+      call slide_beyond(scene%dies(group%die), y, length, closest, release)
+    else
+      call slide_past_corner(scene%dies(group%die), y, [0.0_wp, 0.0_wp], length, state, closest, release)
+    end if
+    share = release%share
+  end function released_share
 
   !> Unit tangent of a die where a point of a side lay on it at the start of the step: pressure and friction act along its normal
   !> and along it. At the end of a piece, where the normal may be any, that of the side.

@@ -7,19 +7,23 @@ module physics_check
   use cut_multipliers, only: judge_cut_multipliers
   use fields, only: displacement_field
   use heat_check, only: check_exchanges, check_heat
+  use kinds, only: wp
   use law_api, only: law_t
-  use law_numbers_check, only: judge_alpha, judge_friction, judge_strains, judge_yield
+  use law_numbers_check, only: judge_alpha, judge_friction, judge_hardening, judge_strains, judge_yield
   use scene, only: axisymmetric, group_t, lacks_mesh, role_side_load, scene_t
   use pressed_supports, only: judge_pressed_supports
   use supports, only: free_motions
-  use text, only: add => add_text, string_t
+  use text, only: add => add_text, string_t, to_text
   use touching_bodies, only: judge_touching
+  use uneven_mesh, only: judge_sizes
   implicit none
   private
   public :: check_operation, check_physics
 
   !> Ends and middle of a side of an element.
   integer, parameter :: nodes_of_side = 3
+  !> Steps that no run makes.
+  real(wp), parameter :: most_steps = 1.0e6_wp
 
 contains
 
@@ -36,11 +40,13 @@ contains
 
     allocate (table(0), warnings(0))
     call judge_cut_multipliers(scene, warnings)
+    call judge_steps(scene, warnings)
     call check_heat(scene, laws, table, warnings)
     do g = 1, size(scene%groups)
       call judge_axis(scene, scene%groups(g), warnings)
     end do
     if (.not. lacks_mesh(scene)) call judge_touching(scene, warnings)
+    call judge_sizes(scene, warnings)
     if (.not. scene%fields(displacement_field)%declared) return
     do g = 1, size(scene%groups)
       associate (group => scene%groups(g))
@@ -62,6 +68,7 @@ contains
     if (.not. lacks_mesh(scene)) call free_motions(scene, outlook, warnings)
     do g = 1, size(scene%materials)
       call judge_yield(scene, laws, g, warnings)
+      call judge_hardening(scene, laws, g, warnings)
       call judge_strains(scene, g, warnings)
       call judge_friction(scene, laws, g, warnings)
       call judge_alpha(scene, laws, g, warnings)
@@ -88,6 +95,18 @@ contains
       call judge_friction(scene, laws, g, warnings)
     end do
   end subroutine check_operation
+
+  !> The longest step is so short beside the run that it does not end.
+  subroutine judge_steps(scene, warnings)
+    type(scene_t), intent(in) :: scene
+    type(string_t), allocatable, intent(inout) :: warnings(:)
+
+    associate (strategy => scene%strategy)
+      if (strategy%end_time > most_steps*strategy%largest_step) &
+        call add(warnings, 'the run has '//to_text(strategy%end_time/strategy%largest_step, 3)//' steps or more: its end is at ' &
+                 //to_text(strategy%end_time, 5)//', steps are '//to_text(strategy%largest_step, 3)//' long at most (STRAT)')
+    end associate
+  end subroutine judge_steps
 
   !> Loads and exchanges of heat on sides of the axis of rotation, where there is no area: they do nothing.
   subroutine judge_axis(scene, group, warnings)

@@ -50,10 +50,25 @@ contains
     call add_groups(scene, json)
     call add_dies(scene, json)
     call add_loads(scene, json)
+    call add_strategy(scene, json)
     call add_zones(scene, json)
     call json%end_object()
     call json%write_file(path, error)
   end subroutine write_scene
+
+  !> Lengths of steps, and the times beside those of multipliers that they hit.
+  subroutine add_strategy(scene, json)
+    type(scene_t), intent(in) :: scene
+    type(json_t), intent(inout) :: json
+
+    call json%begin_object('strategy')
+    call json%add('first_step', scene%strategy%first_step)
+    call json%add('least_step', scene%strategy%least_step)
+    call json%add('largest_step', scene%strategy%largest_step)
+    if (allocated(scene%strategy%save_times)) call json%add('save_times', scene%strategy%save_times)
+    if (allocated(scene%remesh%times)) call json%add('remesh_times', scene%remesh%times)
+    call json%end_object()
+  end subroutine add_strategy
 
   !> Groups with their elements; of loads also how large they get.
   subroutine add_groups(scene, json)

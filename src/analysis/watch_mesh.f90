@@ -125,6 +125,7 @@ contains
     deallocate (solution%estimate%triggers)
     allocate (solution%estimate%triggers, source=found)
     solution%estimate%last_stop = solution%step
+    solution%crossing%remeshed = .false.
     do k = 1, size(found)
       lines(k)%s = 'remesh: '//trigger_text(scene, found(k))
     end do

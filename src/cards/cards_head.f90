@@ -4,10 +4,13 @@ module cards_head
   use deck_reader, only: deck_t
   use diagnostics, only: diagnostics_t
   use scene_draft, only: close_card, draft_t, only_card
-  use text, only: join, string_t
+  use text, only: join, string_t, to_text
   implicit none
   private
   public :: read_title, read_kinematics
+
+  !> Files and pictures have titles in one line.
+  integer, parameter :: longest_title = 1000
 
 contains
 
@@ -23,6 +26,10 @@ contains
     if (k == 0) return
     call cursor%open(deck%cards(k), diagnostics)
     call cursor%text('a title', draft%scene%title)
+    if (len(draft%scene%title) > longest_title) then
+      call cursor%fail('expected a title of at most '//to_text(longest_title)//' bytes, found '//to_text(len(draft%scene%title)))
+      draft%scene%title = draft%scene%title(:longest_title)
+    end if
     call close_card(draft, cursor, deck%cards(k))
   end subroutine read_title
 

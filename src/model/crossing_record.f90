@@ -10,6 +10,8 @@ module crossing_record
     real(wp) :: length = 0.0_wp, until = 0.0_wp
     !> The body was between its sides, and had thinned to nothing.
     logical :: thinned = .false.
+    !> The mesh was made since such a step was found in the one before.
+    logical :: remeshed = .false.
   end type crossing_record_t
 
 end module crossing_record

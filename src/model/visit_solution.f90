@@ -257,6 +257,7 @@ contains
     call visitor%member('length', self%length, kept, 'time', low=0.0_wp)
     call visitor%member('until', self%until, kept, 'time', low=0.0_wp)
     call visitor%member('thinned', self%thinned, kept)
+    call visitor%member('remeshed', self%remeshed, kept)
   end subroutine visit_crossing
 
   subroutine visit_pace(visitor, self)

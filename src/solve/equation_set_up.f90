@@ -37,8 +37,9 @@ module equation_set_up
   !> decks/upsetting, whose side folds onto the die, takes half of the seconds; smaller ones gain less, and some lose.
   integer, parameter :: default_patch = 12
   real(wp), parameter :: large_matrix = 5.0e7_wp
-  !> Memory that an entry of an element matrix takes at least: its value, row, column and place [bytes].
-  real(wp), parameter :: bytes_of_entry = 20.0_wp
+  !> Memory that an entry of an element matrix takes at least until the equations are analysed [bytes]: its value, row, column and
+  !> place, and its part of the graph that is ordered (34 measured on 1e4 to 5e5 elements).
+  real(wp), parameter :: bytes_of_entry = 30.0_wp
 
 contains
 
@@ -116,7 +117,7 @@ contains
       call fail(error, exit_machine, 'the mesh is too large: its element matrices have '//to_text(entries, 3) &
                 //' entries, at most '//to_text(real(huge(1), wp), 3)//' can be counted', 'use a coarser mesh')
     else
-      call require_memory(bytes_of_entry*entries, 'the element matrices', error, address_space=0.0_wp)
+      call require_memory(bytes_of_entry*entries, 'the element matrices and their order', error, address_space=0.0_wp)
     end if
   end subroutine refuse_too_large
 

@@ -200,8 +200,8 @@ class Study(unittest.TestCase):
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "t", "--exact", "u=1"), "of no --quantity"),
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "t", "--exact", "t=one"), "expected t=NUMBER"),
                                ((*deck, "--ladder", "step=1.,.5", "--quantity", "u"), "no such column; there are: time"),
-                               ((*deck, "--ladder", "step=1.,.5", "--quantity", "t@1.3"), "no step of a run ends at this time, the nearest at 1"),
-                               ((*deck, "--ladder", "step=1.,.5", "--quantity", "t@9"), "no step of a run ends at this time, the nearest at 4"),
+                               ((*deck, "--ladder", "step=1.,.5", "--quantity", "t@1.3"), "no step of a run has to end at this time, the nearest at 1"),
+                               ((*deck, "--ladder", "step=1.,.5", "--quantity", "t@9"), "no step of a run has to end at this time, the nearest at 4"),
                                ((*deck, "--ladder", "step=.25,.5,1.", "--quantity", "t"), "from the coarsest to the finest, found 16 steps with step=.25 and 4 with step=1."),
                                ((*deck, "--ladder", "n=4,2", "--quantity", "t"), "from the coarsest to the finest, found"),
                                ((*deck, "--ladder", "stop=1.,.5", "--quantity", "t"), "stop"),
@@ -211,6 +211,16 @@ class Study(unittest.TestCase):
             self.assertEqual(2, done.returncode, (words, done.stderr))
             self.assertIn(message, done.stderr)
             self.assertNotIn("Traceback", done.stderr)
+        # by the deck before any run, where steps may have any length and where they are equal; what the deck does not say, after the first run
+        with open(os.path.join(self.folder, "grow.lag"), "w", encoding="ascii") as file:
+            file.write(BAR.replace("STRAT  $step 1.E-6 $step", "SAVE TIMES 1.7\nSTRAT  $step 1.E-6 2*$step"))
+        for deck_of, at, made in (("grow.lag", "t@2", None), ("bar.lag", "t@1.3", None), ("bar.lag", "u", ["step1."])):
+            done = self.study(deck_of, "--ladder", "step=1.,.5", "--quantity", at, "--out", "early")
+            self.assertEqual(2, done.returncode, done.stderr)
+            folder = os.path.join(self.folder, "early")
+            self.assertEqual(made, os.listdir(folder) if os.path.isdir(folder) else None, (deck_of, at))
+        done = self.study("grow.lag", "--ladder", "step=1.,.5", "--quantity", "t@1.7", "--quantity", "t@4", "--out", "hit")
+        self.assertEqual((0, ""), (done.returncode, done.stderr))
         os.makedirs(os.path.join(self.folder, "mine", "step1."))
         done = self.study("bar.lag", "--out", "mine", "--ladder", "step=1.,.5", "--quantity", "t")
         self.assertEqual(2, done.returncode)

@@ -142,6 +142,32 @@ def crushed_on_new_meshes(checks):
                 [one["reason"] for one in tries])
 
 
+def closed_hole(checks):
+    """A hole in four joined blocks is pressed shut from its ends, where its sides meet on each new mesh anew: on the second one of them
+    they have contact, instead of ever more meshes, none of which is good enough in the end."""
+    q = 4/np.sqrt(2)
+    text = "TITLE A hole pressed shut\nSTATE PLSTN\nKINEM LOG\n"
+    around = ((2 + q, -q, 10, -10), (2 + q, q, 10, 10), (2 - q, q, -10, 10), (2 - q, -q, -10, -10))
+    for k, name in enumerate("RTLB"):
+        (a, b, c, d), (e, f, g, h) = around[k], around[(k + 1) % 4]
+        text += f"BLOCK {name} PL8LS 4 m\n {a} {b} {c} {d} {g} {h} {e} {f}\n 2 1. 3 1.\n SIDE 4 ARC 2. 0.\n"
+    text += "JOIN R 3 T 1\nJOIN T 3 L 1\nJOIN L 3 B 1\nJOIN B 3 R 1\nLAW m EPLA\n 200000. 0.3\n LINEAR 300. 300.\nLAW f COUL2D\n PHI 0.2\n" \
+        "DIE up PILOT 0. 10.\n SEGM 30. 10. -30. 10.\nDIE lo\n SEGM -30. -10. 30. -10.\n"
+    text += "".join(f"CNT2D {name} 2 {die} f\n" for die, names in (("up", "TLR"), ("lo", "BLR")) for name in names)
+    text += "FIXED POINT 0. -10. X\nLIC g\n 0. 0. 1. -6.\nMOVE up Y g\nSTRAT 0.005 1.E-6 0.05 6 3\nREMSH\nEND\n"
+    path, out = os.path.join(checks.folder, "hole.lag"), os.path.join(checks.folder, "hole")
+    with open(path, "w", encoding="utf-8") as deck:
+        deck.write(text)
+    done = subprocess.run([os.path.join(BIN, "lagacycle"), path, "--out", out], check=False, stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True)
+    if not checks.that(done.returncode == 0, "hole: exit code 0", f"{done.returncode} {done.stderr[-300:]}"):
+        return
+    with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    checks.that(any("R has met itself" in warning["text"] for warning in summary["warnings"]), "hole: told", summary["warnings"])
+    checks.small(abs(summary["checks"]["volume_drift_unloaded"]), 2e-3, "hole: volume")
+
+
 def linked(link, width, low, die, place, loads):
     """A block on another one, alone or joined by a soft link into one body."""
     text = "TITLE linked blocks\nSTATE PLSTN\nKINEM LOG\n" + block("low", (0, 10), (0, 2), (10, 2))
@@ -239,7 +265,7 @@ def crushed_ring(checks):
 
 def main():
     checks = Checks()
-    for case in (cees, open_walls, detection, unasked, crushed_tube, crushed_on_new_meshes, remeshed, friction, slot):
+    for case in (cees, open_walls, detection, unasked, crushed_tube, crushed_on_new_meshes, closed_hole, remeshed, friction, slot):
         case(checks)
     if "-a" in sys.argv[1:]:
         crushed_ring(checks)

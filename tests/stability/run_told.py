@@ -53,6 +53,12 @@ TABLE = "DIE    lower\n   SEGM  -5. -1.   30. -1.\nCNT2D  billet 1 lower -3 roug
 # What is changed in the base, and what `--check` must say.
 WRONG = {
     "yield in GPa": ({"   LINEAR 700. 300.\n": "   LINEAR 0.7 0.3\n"}, "it yields at 3.5e-6 of E"),
+    "plastic modulus in another unit": ({"   LINEAR 700. 300.\n": "   LINEAR 700. 3.E5\n"}, "it hardens by 1.5 times E"),
+    "backstress in another unit": ({"   LINEAR 700. 300.\n": "   LINEAR 700. 300.\n   HKIN 3.E5\n"}, "it hardens by 1.5 times E"),
+    "ratio of all elements for that of neighbours": ({"2 1.   3 1.": "2 1.   3 1000."}, "an element is 31.6 times as long as the next one, at x = 2.5, y = 0.47388"),
+    "a foil in other units": ({"2 1.   3 1.": "1 1.   20 1.", "10. 15.   0. 15.": "10. 15.E-2   0. 15.E-2", "30. 15.   -5. 15.": "30. 15.E-2   -5. 15.E-2",
+                               "1. -2.": "1. -2.E-2"}, "an element is 1333 times as long as wide"),
+    "steps in another unit": ({"0.1 1.E-4 0.1": "1.E-7 1.E-9 1.E-7"}, "the run has 1e7 steps or more"),
     "table in percent": ({"   LINEAR 700. 300.\n": "   TABLE 3\n   0. 700.\n   10. 750.\n   50. 900.\n"}, "goes to a plastic strain of 50"),
     "walked the other way": ({"30. 15.   -5. 15.": "-5. 15.   30. 15."}, "within the body of die upper"),
     "die in the part": ({"30. 15.   -5. 15.": "30. 14.   -5. 14."}, "begins 1 deep in die upper"),

@@ -9,7 +9,7 @@ from lagamine_report.program import Parser, Version, print_failure, refuse_to_re
 
 from .errors_of_ladder import judge
 from .ladders import Ladder, Rung, read_ladder, read_quantity
-from .runs import MARK, Result, command_of, digest_of, is_there, make_runs, read_result
+from .runs import MARK, Result, command_of, digest_of, is_there, make_runs, read_result, refuse_times
 
 EXIT_CODES = "Exit codes: 0 done, 2 the deck or an option is refused, 3 a run did not reach its end (the tables name it), 5 the machine failed, 128+n stopped by signal n."
 NOT_AT_END = 3
@@ -68,9 +68,18 @@ def study(options) -> int:
         if not any(quantity.text == word.rpartition("=")[0] for quantity in quantities):
             raise ReportError(f"--exact {word}: of no --quantity")
     missing, marks = missing_runs(options, ladders)
+    refuse_times(missing, quantities)
     if options.slurm:
         return hand_over(options, missing, marks)
-    make_runs(missing, marks, options.jobs, lambda folder: None if options.quiet else print(f"  {os.path.relpath(folder, out)}", flush=True))
+    rungs = {rung.folder: rung for ladder in ladders for rung in ladder.rungs}
+
+    def made(folder: str) -> None:
+        # a quantity that a run does not have is known before the next one
+        read_result(rungs[folder], quantities)
+        if not options.quiet:
+            print(f"  {os.path.relpath(folder, out)}", flush=True)
+
+    make_runs(missing, marks, options.jobs, made)
     return write_study(options, out, ladders, quantities)
 
 

@@ -8,6 +8,8 @@ from lagamine_report.errors import ReportError
 
 NAME = r"[A-Za-z][A-Za-z0-9_]*"
 PLACES = ("end", "max", "min")
+SAME_TIME = 1e-9     # of the end of the run, or of the time itself: two times that differ by no more are one
+HIT_ADVICE = "steps hit the times of every LIC and of SAVE TIMES, and @max, @min and the end are always there"
 
 
 @dataclass
@@ -63,10 +65,27 @@ class Quantity:
             return float(known[-1])
         time = history["time"].values
         k = int(abs(time - self.time).argmin())
-        if abs(time[k] - self.time) > 1e-9 * max(abs(self.time), abs(time[-1])):
-            raise ReportError(f"--quantity {self.text}: no step of a run ends at this time, the nearest at {time[k]:.9g} of {time[-1]:.9g}",
-                              advice="steps hit the times of every LIC and of SAVE TIMES, and @max, @min and the end are always there")
+        self.refuse_beside(time, time[-1], "no step of a run ends at this time, the nearest at")
         return float(values[k])
+
+    def refuse_beside(self, times: Sequence[float], end: float, why: str) -> None:
+        """The time is none of these."""
+        nearest = min(times, key=lambda time: abs(time - self.time))
+        if abs(nearest - self.time) > SAME_TIME * max(abs(self.time), abs(end)):
+            raise ReportError(f"--quantity {self.text}: {why} {nearest:.9g} of {end:.9g}", advice=HIT_ADVICE)
+
+    def refuse_before(self, scene) -> None:
+        """A time that steps of this scene (what `lagamine --check` writes) do not hit, whatever their lengths are."""
+        if self.place != "time":
+            return
+        end, steps = scene["end_time"], scene["strategy"]
+        times = [0.0, end, *steps.get("save_times", ()), *steps.get("remesh_times", ())]
+        for multiplier in scene["multipliers"]:
+            times += multiplier["time"]
+        if steps["first_step"] == steps["largest_step"]:
+            # steps as long as the first one
+            times.append(round(self.time / steps["first_step"]) * steps["first_step"])
+        self.refuse_beside([time for time in times if 0 <= time <= end], end, "no step of a run has to end at this time, the nearest at")
 
 
 def read_ladder(text: str, out: str) -> Ladder:

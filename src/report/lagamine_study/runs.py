@@ -150,6 +150,25 @@ def make_runs(commands: Dict[str, List[str]], marks: Dict[str, Dict[str, object]
                 signal.signal(number, handler)
 
 
+def refuse_times(commands: Dict[str, List[str]], quantities: Sequence[Quantity]) -> None:
+    """Times of quantities at which steps of a run do not end, by what `lagamine --check` says of its deck. A deck that is refused is left to its run,
+    one of several operations to the first run that ends."""
+    if not any(quantity.place == "time" for quantity in quantities):
+        return
+    for words in commands.values():
+        with tempfile.TemporaryDirectory() as folder:
+            check = [os.path.join(os.path.dirname(words[0]), "lagamine"), words[1], "--check", "--quiet", "--out", folder, *words[words.index("--threads") + 2:]]
+            try:
+                code = subprocess.run(check, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode
+            except OSError as error:
+                raise ReportError(f"{check[0]}: cannot be started: {error.strerror}", EXIT_MACHINE) from error
+            scenes = os.listdir(folder)
+            if code == 0 and len(scenes) == 1:
+                scene = read_object(os.path.join(folder, scenes[0]))
+                for quantity in quantities:
+                    quantity.refuse_before(scene)
+
+
 def refuse_at_work(folder: str) -> None:
     """Programs that a killed study has left go on, and their folder is theirs until they end."""
     try:
