@@ -23,7 +23,7 @@ module steel_numbers
   !> Where heats of transformation are looked at [degC], and what none of steel comes near: 640 to 1 100 by L. Furlan et al. 2025
   !> for 100Cr6 [MJ/m3].
   real(wp), parameter :: warm = 400.0_wp, most_latent = 3000.0_wp
-  !> Coefficients of transformation plasticity of steels are 1e-5 to 2e-4 (F.D. Fischer et al., Eur. J. Mech. A 15 (1996) 1) [1/MPa].
+  !> Coefficients of transformation plasticity of steels: 1e-5 to 2e-4 (F.D. Fischer et al., Eur. J. Mech. A 15 (1996) 1) [1/MPa].
   real(wp), parameter :: least_plasticity = 1.0e-7_wp
   !> Hollomon and Jaffe's P/1000 is 8 to 30 [1e3 K].
   real(wp), parameter :: most_parameter = 100.0_wp
