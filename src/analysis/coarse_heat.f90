@@ -20,6 +20,7 @@ contains
 
   !> A line, added to the warnings of a run at its end, where temperatures err in space by more than a share of their range: in the
   !> mean square of the volume at any time, or anywhere at the end; or where a phase errs by more than a share in the mean square.
+  !> Of temperatures on 8 nodes no error is known, but where they leave those around them.
   subroutine warn_of_coarse_heat(scene, solution, warnings)
     type(scene_t), intent(in) :: scene
     type(solution_t), intent(in) :: solution
@@ -30,7 +31,13 @@ contains
 
     associate (heat => solution%heat)
       range = heat%hottest - heat%coldest
-      if (heat%space_steps == 0) return
+      if (heat%space_steps == 0) then
+        if (heat%excess > expected_share*range) call add_text(warnings, 'temperatures on 8 nodes are beyond those that can be ' &
+          //'there in '//to_text(heat%outside)//' steps, by up to '//to_text(heat%excess, 3)//' of a range of ' &
+          //to_text(range, 4)//': the mesh is coarse for heat that comes in or goes out suddenly; use smaller elements there, or ' &
+          //'BILINEAR, with which temperatures stay within those around them')
+        return
+      end if
       if (.not. range > resolution*max(abs(heat%hottest), abs(heat%coldest))) return
       call errors_of_phases(scene, solution, phases)
       with = ', and phases and stresses with them'

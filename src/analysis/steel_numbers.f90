@@ -3,7 +3,8 @@ module steel_numbers
   use kinds, only: wp
   use scene, only: scene_t
   use steel_temperatures, only: top_of, words_of_temperatures
-  use steels, only: bainite, kinetics_none, phase_count, phase_names, prop_yield, prop_young, steel_t, unknown_temperature
+  use steels, only: austenite, bainite, expansion_none, expansion_total, kinetics_none, martensite, phase_count, phase_names, &
+                    prop_alpha, prop_latent, prop_plasticity, prop_strain, prop_yield, prop_young, steel_t, unknown_temperature
   use temperature_curves, only: curve_at, is_given
   use text, only: add_new_text, string_t, to_text
   implicit none
@@ -19,6 +20,13 @@ module steel_numbers
   real(wp), parameter :: scatter_of_formulas = 75.0_wp
   !> Where both are compared [degC].
   real(wp), parameter :: room_temperature = 20.0_wp
+  !> Where heats of transformation are looked at [degC], and what none of steel comes near: 640 to 1 100 by L. Furlan et al. 2025
+  !> for 100Cr6 [MJ/m3].
+  real(wp), parameter :: warm = 400.0_wp, most_latent = 3000.0_wp
+  !> Coefficients of transformation plasticity of steels: 1e-5 to 2e-4 (F.D. Fischer et al., Eur. J. Mech. A 15 (1996) 1) [1/MPa].
+  real(wp), parameter :: least_plasticity = 1.0e-7_wp
+  !> Hollomon and Jaffe's P/1000 is 8 to 30 [1e3 K].
+  real(wp), parameter :: most_parameter = 100.0_wp
 
 contains
 
@@ -50,7 +58,7 @@ contains
     if (steel%ms > unknown_temperature .and. .not. (steel%beta > least_beta .and. steel%beta < most_beta)) &
       words = words//'; BETA of MARTEN is '//to_text(steel%beta, 4)//' 1/K, that of steels '//to_text(least_beta)//' to ' &
               //to_text(most_beta)
-    words = words//yields(steel)
+    words = words//yields(steel)//transforms(steel)
     if (words == '') return
     words = 'the steel '//steel%name//': '//words(3:)
     if (allocated(steel%where_defined)) words = words//' ('//steel%where_defined//')'
@@ -87,5 +95,58 @@ contains
     if (ratio(p) > largest_yield) words = '; '//trim(phase_names(p))//' yields at '//to_text(ratio(p), 3)//' of E at 20 degC, ' &
                                           //'steels below '//to_text(largest_yield)//': SY and E are in MPa'
   end function yields
+
+  !> Heat, plasticity and strain of transformation, and hardness by tempering, in other units or of the wrong sign.
+  pure function transforms(steel) result(words)
+    type(steel_t), intent(in) :: steel
+    character(len=:), allocatable :: words
+    real(wp) :: value
+    integer :: p
+
+    words = ''
+    do p = 1, phase_count
+      value = number(steel, prop_latent, p, warm)
+      if (value > most_latent) words = words//'; LATENT of '//trim(phase_names(p))//' is '//to_text(value, 4)//' MJ/m3 at ' &
+                                       //to_text(warm)//' degC, that of steels below '//to_text(most_latent)
+      value = number(steel, prop_plasticity, p, room_temperature)
+      if (value > 0 .and. value < least_plasticity) &
+        words = words//'; KTP of '//trim(phase_names(p))//' is '//to_text(value, 3)//' 1/MPa, that of steels 1e-5 to 2e-4'
+    end do
+    if (is_given(steel%tempered_hardness)) then
+      if (allocated(steel%tempered_hardness%t)) then
+        value = maxval(steel%tempered_hardness%t)
+        if (value > most_parameter) words = words//'; HV of TEMPER is by P/1000, 8 to 30, not by P up to '//to_text(value, 5)
+      end if
+    end if
+    words = words//shrinks(steel)
+  end function transforms
+
+  !> Martensite that is smaller, at Ms, than the austenite that it forms from.
+  pure function shrinks(steel) result(words)
+    type(steel_t), intent(in) :: steel
+    character(len=:), allocatable :: words
+    real(wp) :: strain
+
+    words = ''
+    if (steel%expansion == expansion_none .or. .not. steel%ms > unknown_temperature) return
+    if (.not. is_given(steel%properties(prop_strain, martensite))) return
+    strain = number(steel, prop_strain, martensite, steel%ms) - number(steel, prop_strain, austenite, steel%ms)
+    if (steel%expansion == expansion_total) &
+      strain = strain + (number(steel, prop_alpha, martensite, steel%ms) - number(steel, prop_alpha, austenite, steel%ms)) &
+               *(steel%ms - steel%reference)
+    if (strain < 0) words = '; MARTENSITE is smaller than the austenite that it forms from, by a strain of '//to_text(-strain, 3) &
+                            //' at Ms: that of steels is larger (DEPS of MARTENSITE)'
+  end function shrinks
+
+  !> A number of a phase at a temperature; 0 where it is not given.
+  pure function number(steel, property, phase, temperature) result(value)
+    type(steel_t), intent(in) :: steel
+    integer, intent(in) :: property, phase
+    real(wp), intent(in) :: temperature   !! [degC]
+    real(wp) :: value                     !! [unit of the property]
+
+    value = 0
+    if (is_given(steel%properties(property, phase))) value = curve_at(steel%properties(property, phase), temperature)
+  end function number
 
 end module steel_numbers

@@ -78,14 +78,15 @@ contains
     end if
   end subroutine yield_table
 
-  !> Norton-Hoff: a(1) p**a(2) exp(-a(3) p). The slope is needed above p = 0 only.
+  !> Norton-Hoff: a(1) p**a(2) exp(-a(3) p). The slope is needed above p = 0 only; below, where a small share of an error of the
+  !> state (path_stress) may be, the stress is that of 0.
   pure subroutine yield_norton(a, curve, p, sy, slope)
     real(wp), intent(in) :: a(most_numbers)   !! (most_numbers) [unit of each number]
     real(wp), intent(in) :: curve(:, :)   !! (2, npoint): plastic strain [-], yield stress [stress]
     real(wp), intent(in) :: p             !! [-]
     real(wp), intent(out) :: sy, slope    !! [stress]
 
-    sy = a(1)*p**a(2)*exp(-a(3)*p)
+    sy = a(1)*max(p, 0.0_wp)**a(2)*exp(-a(3)*p)
     slope = 0
     if (p > 0) slope = sy*(a(2)/p - a(3))
   end subroutine yield_norton

@@ -195,10 +195,11 @@ contains
     flow%threshold = flow%below(1)
     call mixture_viscosity(material%steel, z, temperature, curve(3:6, :))
     curve(3, :) = curve(3, :)*(a*material%values(place_stress))
-    curve(7, :) = hardened
+    ! a small share of an error of the state (path_stress) makes less than none of what has not flowed yet
+    curve(7, :) = max(hardened, 0.0_wp)
     ! rates of the steel's file are per second
     flow%below(at_step) = dt*material%values(place_visco)
-    flow%below(at_start_rate) = rate/material%values(place_visco)
+    flow%below(at_start_rate) = max(rate, 0.0_wp)/material%values(place_visco)
     flow%yield => yield_by_rate
   end subroutine flow_of_mixture
 

@@ -57,7 +57,7 @@ contains
     real(wp), intent(out) :: tangent(4, 4)       !! [stress]
     real(wp), intent(out) :: by_work(4)          !! d(plastic work)/d(trial strain) [stress]
     integer, intent(out) :: status
-    real(wp) :: driving(4), back(4), mean, q, g3, start, limit, factor, exponent, sy, slope, dp
+    real(wp) :: driving(4), back(4), mean, q, g3, start, limit, factor, exponent, sy, slope, dp, rate
 
     status = law_done
     by_work = 0
@@ -92,9 +92,11 @@ contains
     if (flow%rate_form == rate_none) then
       call return_at_rest(flow, below, above, committed(1), q, g3, dp, sy, slope, status)
     else
-      call rate_factor(flow%rate_form, flow%rate, committed(flow%rate_row), factor, exponent)
+      ! a small share of an error of the state (path_stress) makes less than no rate of what has not flowed yet
+      rate = max(committed(flow%rate_row), 0.0_wp)
+      call rate_factor(flow%rate_form, flow%rate, rate, factor, exponent)
       start = start*factor
-      dp = committed(flow%rate_row)*dt
+      dp = rate*dt
       call return_with_rate(flow, below, above, committed(1), q, g3, limit, dt, dp, sy, slope, status)
       history(flow%rate_row) = dp/dt
       if (.not. dp > 0) then

@@ -31,8 +31,10 @@ module heat_record
     !> It must be shortened by its error; largest factor for the step that follows.
     logical :: too_long = .false.
     real(wp) :: growth = huge(1.0_wp)
-    !> How far temperatures are beyond those that can be there (heat_bounds); the step was made again for that.
+    !> How far temperatures are beyond those that can be there (heat_bounds); the step was made again for that. Where they stand on
+    !> 8 nodes, the least and the largest that can be there so far; 0 where none are known.
     real(wp) :: excess = 0.0_wp
+    real(wp) :: low = 0.0_wp, high = 0.0_wp
     logical :: fell_back = .false.
   end type heat_step_t
 
@@ -53,7 +55,8 @@ module heat_record
     !> centres of all elements (nnode + nelem), of none where they are not followed [temperature], [energy].
     real(wp), allocatable :: finer(:), finer_content(:)
     !> Steps in which the error in space was followed; its largest size now and so far, and in the mean square of the volume
-    !> [temperature]; when the largest of the latter was [time]. Least and largest temperature so far.
+    !> [temperature]; when the largest of the latter was [time]. Least and largest temperature so far; where temperatures stand on 8
+    !> nodes, those that can be there.
     integer :: space_steps = 0
     real(wp) :: space_now = 0.0_wp, space_largest = 0.0_wp, space_mean = 0.0_wp, space_mean_largest = 0.0_wp, space_time = 0.0_wp
     real(wp) :: coldest = 0.0_wp, hottest = 0.0_wp
@@ -85,6 +88,10 @@ contains
       record%die_error = step%die_error
       record%temperature_error = step%temperature_error
       if (step%above) record%above = record%above + 1
+    end if
+    if (step%high > step%low) then
+      record%coldest = step%low
+      record%hottest = step%high
     end if
     if (step%fell_back) record%fallbacks = record%fallbacks + 1
     if (.not. step%excess > 0) return

@@ -9,13 +9,16 @@ module austenite_decomposition
   use kinds, only: wp
   use latent_heat, only: release_latent
   use martensite_kinetics, only: grow_martensite, martensite_start, total_martensite
-  use phase_growth, only: forget_growth, forms, grow, limit_growth
+  use phase_growth, only: forget_growth, forms, grow, limit_growth, match_growth
   use phase_state, only: at_coldest, at_grain, first_growth, first_incubation
   use steels, only: austenite, bainite, ferrite, martensite, pearlite, steel_t
   use stress_kinetics, only: shift_of_phase, stressed_span
   implicit none
   private
   public :: cool_by_histories, transform
+
+  !> Others that divide the austenite by less are as good as none.
+  real(wp), parameter :: least_others = 1.0e-8_wp
 
 contains
 
@@ -58,20 +61,23 @@ contains
     type(dual_t), intent(in) :: time, from, to, stress(2, 2)
     type(dual_t), intent(inout) :: s(:)   !! (state_size) [state_units]
     type(dual_t), intent(inout) :: heat   !! [MJ/m3]
-    type(dual_t), dimension(ferrite:martensite) :: w, volume, dz
+    type(dual_t), dimension(ferrite:martensite) :: w, free, volume, dz
     type(dual_t) :: total, total_volume, room, formed, middle, own, span, ms(2), coldest(2), by_diffusion, cold(2)
     integer :: i
 
     middle = 0.5_wp*(from + to)
     w = dual_t()
+    free = dual_t()
     volume = dual_t()
     do i = ferrite, bainite
       own = middle
       span = time
       call stressed_span(steel, i, from, to, stress, own, span)
       if (forms(steel, i, own%value)) then
+        call match_growth(steel, i, own, s(i), s(first_growth + i - ferrite))
         call grow(steel, i, span, own, s(first_incubation + i - ferrite), s(first_growth + i - ferrite), w(i), volume(i))
-        call limit_growth(steel, i, own, s, w(i), volume(i))
+        free(i) = w(i)
+        call limit_growth(steel, i, own, 0.5_wp*(to - from), s, w(i), volume(i))
       else if (.not. s(i)%value > 0) then
         ! those beside what has formed stay: it can go on
         call forget_growth(steel, i, own%value, s)
@@ -85,6 +91,7 @@ contains
     if (cold(1)%value < cold(2)%value) cold(2) = cold(1)
     call grow_martensite(steel, by_diffusion, cold(2), s(at_coldest), w(martensite))
     coldest(2) = s(at_coldest)
+    call share_with_others(free, w)
     total = sum_of(w)
     total_volume = sum_of(volume)
     if (.not. (total%value + total_volume%value > 0 .and. s(austenite)%value > 0)) return
@@ -114,6 +121,24 @@ contains
     end do
     s(austenite) = s(austenite) - sum_of(dz)
   end subroutine transform
+
+  !> A phase that a largest fraction holds back forms as much beside others as alone, as long as there is austenite for it: w is
+  !> over the austenite that is left on the average, the others at work; no more than it would be without the largest fraction.
+  pure subroutine share_with_others(free, w)
+    type(dual_t), intent(in) :: free(ferrite:)       !! (ferrite:martensite) w without a largest fraction
+    type(dual_t), intent(inout) :: w(ferrite:)       !! (ferrite:martensite)
+    type(dual_t) :: alone(ferrite:martensite), others
+    integer :: i
+
+    alone = w
+    do i = ferrite, bainite
+      if (.not. (alone(i)%value > 0 .and. alone(i)%value < free(i)%value)) cycle
+      others = sum_of(alone) - alone(i)
+      if (.not. others%value > least_others) cycle
+      w(i) = alone(i)*others/(1.0_wp - exp(-others))
+      if (w(i)%value > free(i)%value) w(i) = free(i)
+    end do
+  end subroutine share_with_others
 
   pure function sum_of(parts) result(total)
     type(dual_t), intent(in) :: parts(:)   !! (any number)

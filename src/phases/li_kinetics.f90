@@ -12,7 +12,7 @@ module li_kinetics
                     kinetics_t, pearlite
   implicit none
   private
-  public :: li_speed, li_power, li_table, li_rate, li_sum, grow_li
+  public :: li_speed, li_power, li_table, li_rate, li_sum, li_progress, grow_li
 
   !> Calories are thermochemical [J/cal].
   real(wp), parameter :: activation = 27500*4.184_wp
@@ -134,6 +134,17 @@ contains
     k = min(n, int(q*n) + 1)
     call cubic(total, slope, k, q*n - (k - 1), sum_of_share, derivative)
   end function li_sum
+
+  !> S(X) with its derivative, for the progress of a share that is there.
+  pure function li_progress(total, slope, share) result(progress)
+    real(wp), intent(in) :: total(:), slope(:)   !! (n+1) of li_table [-]
+    type(dual_t), intent(in) :: share            !! X
+    type(dual_t) :: progress                     !! S [-]
+
+    progress%value = li_sum(total, slope, share%value)
+    if (.not. (share%value > 0 .and. share%value < 1)) return
+    progress%slope = share%slope/(share%value**(0.4_wp*(1 - share%value))*(1 - share%value)**(0.4_wp*share%value))
+  end function li_progress
 
   !> Value and derivative by u of the cubic of interval k, u from 0 to 1 in it.
   pure subroutine cubic(total, slope, k, u, value, derivative)

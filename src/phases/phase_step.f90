@@ -11,7 +11,7 @@ module phase_step
   use dual_numbers, only: dual_t, log, operator(*), operator(+), operator(-), operator(/)
   use kinds, only: wp
   use martensite_kinetics, only: martensite_start
-  use phase_growth, only: forms, grow
+  use phase_growth, only: forms, grow, match_growth
   use phase_state, only: at_coldest, at_rate, cold_as_mixture, first_growth, first_incubation, never_cold, set_hardness, state_size
   use phase_tempering, only: temper_phases
   use reheating, only: heat_up
@@ -28,8 +28,9 @@ module phase_step
   real(wp), parameter :: least_austenite = 1.0e-3_wp
   real(wp), parameter :: most_growth = 0.1_wp
   integer, parameter :: most_parts = 64
-  !> Where the cooling rate of hardness is taken [degC].
-  real(wp), parameter :: rate_temperature = 700.0_wp
+  !> Where the cooling rate of hardness is taken [degC]: 700, but for a hair. Steps end at 700 itself, and there a step may end on
+  !> one side of it and the next one begin on the other, by round-off.
+  real(wp), parameter :: rate_temperature = 699.99_wp
 
 contains
 
@@ -150,6 +151,7 @@ contains
       if (.not. forms(steel, i, temperature%value)) cycle
       incubation = dual_t(committed(first_incubation + i - first_diffusive))
       growth = dual_t(committed(first_growth + i - first_diffusive))
+      call match_growth(steel, i, temperature, dual_t(committed(i)), growth)
       call grow(steel, i, hastened(steel%isig, i, stress, dual_t(dt)), temperature, incubation, growth, w, volume)
       active = active + 1
       most = most + w%value + volume%value

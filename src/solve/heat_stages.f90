@@ -13,7 +13,7 @@ module heat_stages
   use equations, only: equations_t, remedy_euler, remedy_monotone, remedy_none, stage_t
   use external_loads, only: external_forces
   use fields, only: find_field
-  use heat_bounds, only: excess_of_temperature, has_bounds, on_corners_alone
+  use heat_bounds, only: find_excess, has_bounds, has_rough_bounds, on_corners_alone
   use heat_error, only: diagonal, estimate_error, flows, weight
   use kinds, only: wp
   use kinetics_error, only: content_error_of_path, keep_piece, path_piece_t
@@ -35,6 +35,9 @@ module heat_stages
   real(wp), parameter :: error_weights(0:2) = weights - [(1 - weight)/3, (3*weight + 1)/3, diagonal/3]
   !> A step is made so much shorter than its error asks for, and at least and at most this factor after one that is too long.
   real(wp), parameter :: safety = 0.9_wp, least_factor = 0.1_wp
+
+  !> Temperatures of bodies that release heat themselves, latent or by work, may leave those around them by this share of the range.
+  real(wp), parameter :: own_heat = 0.05_wp
 
   !> What an evaluation leaves behind that the books are made of.
   type :: evaluation_t
@@ -88,9 +91,12 @@ contains
     end if
     if (.not. outcome%converged) return
     if (bounded) then
-      outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
+      call find_excess(scene, equations, solution, dt, outcome%du, outcome%heat)
       call keep_to_bounds(scene, equations, solution, dt, two_stages, outcome, given, go_on)
       if (.not. outcome%converged) return
+    else if (has_rough_bounds(scene)) then
+      call find_excess(scene, equations, solution, dt, outcome%du, outcome%heat)
+      if (outcome%heat%excess < own_heat*(outcome%heat%high - outcome%heat%low)) outcome%heat%excess = 0
     end if
     call judge(scene, solution, dt, outcome)
   end subroutine solve_heat
@@ -119,7 +125,7 @@ contains
       call add_iterations(outcome, again)
       outcome = again
       if (.not. outcome%converged) exit
-      outcome%heat%excess = excess_of_temperature(scene, equations, solution, dt, outcome%du)
+      call find_excess(scene, equations, solution, dt, outcome%du, outcome%heat)
     end do
     equations%remedy = remedy_none
   end subroutine keep_to_bounds

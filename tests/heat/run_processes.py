@@ -421,7 +421,14 @@ def told(checks):
              "AUSTEN 1 1\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\n   E 2E5\n   SY TABLE 20 300 800 30\nEND\n")
     for old, new, words in (("", "", ""), ("MS 300", "MS 573", "Ms (573) is above Bs (550)"), ("AE1 727", "AE1 827", "Ae1 (827) is above Ae3 (780)"),
                             ("   540", "   640", "the curve of BAINITE (640) is above Bs (550)"), ("BETA 0.011", "BETA 11", "BETA of MARTEN is 11 1/K, that of steels 0.002 to 0.2"),
-                            ("E 2E5", "E 200", "AUSTENITE yields at 1.5 of E at 20 degC, steels below 0.03: SY and E are in MPa")):
+                            ("E 2E5", "E 200", "AUSTENITE yields at 1.5 of E at 20 degC, steels below 0.03: SY and E are in MPa"),
+                            ("END", "PHASE MARTENSITE\n   LATENT 640\nEND", ""),
+                            ("END", "PHASE MARTENSITE\n   LATENT 82000\nEND", "LATENT of MARTENSITE is 82000 MJ/m3 at 400 degC, that of steels below 3000"),
+                            ("END", "TRIP DESALOS\nPHASE MARTENSITE\n   KTP 8E-11\nEND", "KTP of MARTENSITE is 8e-11 1/MPa, that of steels 1e-5 to 2e-4"),
+                            ("END", "TEMPER\n   MARTENSITE 1E9 1.2E5 0.5\n   HV TABLE 9000 632 18718 269\nEND", "HV of TEMPER is by P/1000, 8 to 30, not by P up to 18718"),
+                            ("END", "EXPAND TOTAL 20\nPHASE AUSTENITE\n   ALPHA 22E-6\nPHASE MARTENSITE\n   ALPHA 12E-6\n   DEPS -0.0105\nEND",
+                             "MARTENSITE is smaller than the austenite that it forms from, by a strain of 0.0133 at Ms"),
+                            ("END", "EXPAND TOTAL 20\nPHASE AUSTENITE\n   ALPHA 22E-6\nPHASE MARTENSITE\n   ALPHA 12E-6\n   DEPS 0.0105\nEND", "")):
         with open(os.path.join(checks.folder, "odd.met"), "w") as file:
             file.write(sound.replace(old, new))
         run = Run(checks, f"odd-{words[:6] or 'none'}", "TITLE odd\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   4. 0.   4. 4.   0. 4.\n   2 1.   2 1.\n"

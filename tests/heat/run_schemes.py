@@ -195,6 +195,19 @@ def bounds(checks):
                     checks.that(values["steps_made_again_for_bounds"] > 0, f"{run.name}: falls back", told)
                 if not option and step == 1e-5:
                     checks.that(values["excess_of_bounds"] > 1, f"{run.name}: a shock is not resolved", told)
+                warned = [line["text"] for line in summary(run)["warnings"] if "beyond those that can be there" in line["text"]]
+                checks.that(len(warned) == (values["excess_of_bounds"] > 0.05*780), f"{run.name}: told", (told, warned))
+    # a steel with phases: overshoot of many short steps, and none where elements are small
+    with open(os.path.join(checks.folder, "shock.met"), "w", encoding="utf-8") as file:
+        file.write("STEEL s\nSOURCE 'round numbers'\nTEMPS MS 300\nMARTEN BETA 0.011\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\nPHASE MARTENSITE\n   LATENT 640\nEND\n")
+    for elements, option, outside in ((4, "", True), (64, "", False), (4, " BILINEAR", False)):
+        run = Run(checks, f"shock-{elements}{option[1:3]}", HEAD.format(title="quenched in salt", state="PLSTN")
+                  + f"BLOCK bar PL8TM 4 m{option}\n   0. 0. 20. 0. 20. 2. 0. 2.\n   {elements} 1. 1 1.\nLAW m META\n   STEEL shock.met s\n   ENERGY 1.\nSTART T 850.\n"
+                  "CONVE bar 2 H 20. TS 200.\nTHETA TRBDF2 TOL 1.\nSTRAT 0.002 1.E-6 1. 6 3\nSTOP 20.\nPROBE most MAX T bar\nEND\n")
+        if run.ok:
+            warned = [line["text"] for line in summary(run)["warnings"] if "beyond those that can be there" in line["text"]]
+            most = run.history["most"].max()
+            checks.that((most > 850 + 0.05*650) == outside and len(warned) == outside, f"{run.name}: overshoot is told", (most, warned))
 
 
 SKEW = (("parallelograms", "0. 0. 1. 0. 3. 1. 2. 1."), ("flat", "0. 0. 4. 0. 4. 0.3 0. 0.3"), ("both", "0. 0. 1. 0. 2. 0.3 1. 0.3"))
