@@ -8,7 +8,7 @@ module cards_contours
   use kinds, only: wp
   use mesh, only: side_set_t
   use mesh_parts, only: body_t, mesh_parts_t
-  use piece_rows, only: ends_meet, piece_words, read_piece
+  use piece_rows, only: is_one_point, piece_words, read_piece
   use remesher_options, only: has_contours
   use scene_draft, only: close_card, draft_t, head_location, words_of
   use text, only: string_t, to_text
@@ -59,6 +59,7 @@ contains
     integer, allocatable :: row(:), loop(:)
     real(wp), allocatable :: pieces(:, :, :)
     integer :: ends(max(nrow, 1)), loops(max(nrow, 1))
+    real(wp) :: largest
     logical :: closed
     integer :: first, form, i, k, n
 
@@ -67,18 +68,22 @@ contains
     n = 0
     first = 1
     closed = .false.
+    largest = 0
     loops = 1
     do k = 1, max(nrow, 1)
+      if (k > 1) loops(k) = loops(k - 1)
       if (closed) then
         first = n + 1
-        loops(k:) = loops(k) + 1
+        loops(k) = loops(k) + 1
       end if
       call cursor%next_row('one of '//piece_words//' and its points')
       call cursor%name('one of '//piece_words, forms, form)
+      i = n
       if (form > 0) call read_piece(cursor, form, n, pieces, anywhere=closed)
       ends(k) = n
+      if (n > i) largest = max(largest, maxval(abs(pieces(:, :, i + 1:n))))
       closed = n > first
-      if (closed) closed = ends_meet(pieces(:, :, first:n))
+      if (closed) closed = is_one_point(pieces(:, 3, n), pieces(:, 1, first), largest)
       if (closed) pieces(:, 3, n) = pieces(:, 1, first)
     end do
     allocate (row(n), loop(n))

@@ -8,7 +8,7 @@ module piece_rows
   use vectors, only: length_of
   implicit none
   private
-  public :: piece_words, read_piece, ends_meet
+  public :: piece_words, read_piece, ends_meet, is_one_point
 
   !> A piece begins where the last one ended, to this share of the curve's size.
   real(wp), parameter :: gap_tolerance = 1.0e-9_wp
@@ -96,7 +96,15 @@ contains
 
     n = size(pieces, 3)
     yes = n >= 2
-    if (yes) yes = length_of(pieces(:, 3, n) - pieces(:, 1, 1)) <= gap_tolerance*maxval(abs(pieces))
+    if (yes) yes = is_one_point(pieces(:, 3, n), pieces(:, 1, 1), maxval(abs(pieces)))
   end function ends_meet
+
+  !> Two ends of pieces are the same point, to round-off of the largest coordinate of their curve.
+  pure function is_one_point(a, b, largest) result(yes)
+    real(wp), intent(in) :: a(2), b(2), largest   !! [length]
+    logical :: yes
+
+    yes = length_of(a - b) <= gap_tolerance*largest
+  end function is_one_point
 
 end module piece_rows

@@ -21,7 +21,7 @@ module newton
                                in_turmoil, is_near, iteration_t, judge, was_given_time, went_round
   use jumped_bodies, only: has_jumped
   use kinds, only: wp
-  use law_api, only: contact_slip
+  use law_api, only: contact_slip, contact_stick
   use linear_solver, only: return_to_chosen
   use line_search, only: manner_t, search_along
   use nonlinear_elimination, only: take_eliminated
@@ -48,6 +48,8 @@ module newton
   !> The first motion is taken where no more corrections than this share of the most iterations went too far; a motion out of dies
   !> where no more were made.
   real(wp), parameter :: sure_way = 0.25_wp
+  !> Points that slip to each that sticks, or more, where hardly anything holds a body in its contacts.
+  integer, parameter :: few_stick = 4
 
 contains
 
@@ -356,8 +358,8 @@ contains
       long = relative_motion(equations, solution%fields, correction, outcome%du) >= 1
       manner = manner_t(whole=caught(outcome%history(first:)) .and. .not. shift%value > 0 .and. .not. long, &
                         closely=in_turmoil(outcome%history(first:)) .or. went_round(outcome%history(first:)))
-      ! a body that contact alone holds slips at all of its points
-      manner%many = size(equations%loose) > 0 .and. any(contact == contact_slip)
+      ! a body that contact alone holds slips at nearly all of its points
+      manner%many = size(equations%loose) > 0 .and. few_stick*count(contact == contact_stick) <= count(contact == contact_slip)
       if (long .and. manner%many .and. solution%last_step > 0) manner%closely = .true.
       if (steep) manner = manner_t(exactly=.true.)
       if (equations%downhill) manner = manner_t(downhill=.true.)

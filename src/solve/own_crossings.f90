@@ -29,8 +29,8 @@ module own_crossings
 
   !> Free sides of all bodies.
   type :: free_sides_t
-    !> Nodes, walked with the body on the left (3, nside); the body of each side, the group of its element, and the contour it is of,
-    !> 0 where contours meet in a node (nside).
+    !> Nodes, walked with the body on the left (3, nside); the body of each side, the group of its element, and its contour, 0 where
+    !> contours meet in a node (nside).
     integer, allocatable :: nodes(:, :), body(:), group(:), contour(:)
   end type free_sides_t
 

@@ -19,7 +19,7 @@ from remeshed import cycle, tries  # noqa: E402
 from run_planes_remesh import CASES, SAME_FORCE  # noqa: E402
 from support import DONE, Checks, history, said, write  # noqa: E402
 
-SAME_TUBE, FEW = 0.03, 10
+SAME_TUBE, FEW = 0.03, 8
 DECK = """TITLE  A body with a hole between two plates
 STATE  PLSTN
 KINEM  LOG

@@ -84,9 +84,9 @@ def piece_curve(form, x, n=200):
 
 
 def area_left(pieces):
-    """Area inside a closed contour, positive where it is on the left."""
-    x = np.vstack([piece_curve(form, points, 2000)[:-1] for form, points in pieces])
-    y = np.roll(x, -1, axis=0)
+    """Area inside closed contours, positive where it is on the left."""
+    curves = [piece_curve(form, points, 2000) for form, points in pieces]
+    x, y = np.vstack([curve[:-1] for curve in curves]), np.vstack([curve[1:] for curve in curves])
     return 0.5 * float((x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0]).sum())
 
 

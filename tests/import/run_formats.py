@@ -257,6 +257,19 @@ class Formats(unittest.TestCase):
             self.assertAlmostEqual(2 * math.pi, abs(bulge), delta=20 * tolerance)
             self.read_by_solver("FIXED  part 1 XY", "REMSH", "   SIZE 0.2 1.")
 
+    def test_body_with_holes(self):
+        """A plate with a round hole and a triangular one, drawn in any order and direction: the area in closed form, read by the solver."""
+        document = ezdxf.new("R2010")
+        on = {"layer": "plate"}
+        space = document.modelspace()
+        space.add_circle((3, 3), 1, dxfattribs=on)
+        space.add_lwpolyline([(0, 0), (0, 6), (10, 6), (10, 0)], close=True, dxfattribs=on)     # clockwise
+        space.add_lwpolyline([(6, 2), (8, 2), (7, 4)], close=True, dxfattribs=on)
+        document.saveas(self.path("part.dxf"))
+        self.imported("part.dxf", "--body", "plate", "--tolerance", "1e-4", "--law", "steel")
+        self.assertAlmostEqual(60 - math.pi - 2, area_left(pieces_of(self.out, "plate")), delta=1e-3)
+        self.read_by_solver("FIXED  plate 1 XY", "REMSH", "   SIZE 0.2 1.")
+
     def test_spline_within_tolerance(self):
         """A cubic with an inflection, and a rational one that is a circle; the distance is measured on the entity, by ezdxf's flattening."""
         def make(space):

@@ -78,6 +78,21 @@ def two_circles(space):
     space.add_circle((0, 0), 1, dxfattribs=ON)
 
 
+def two_circles_apart(space):
+    space.add_circle((0, 0), 2, dxfattribs=ON)
+    space.add_circle((5, 0), 1, dxfattribs=ON)
+
+
+def three_circles(space):
+    two_circles(space)
+    space.add_circle((0, 0), 3, dxfattribs=ON)
+
+
+def circles_that_cross(space):
+    space.add_circle((0, 0), 2, dxfattribs=ON)
+    space.add_circle((2, 0), 1, dxfattribs=ON)
+
+
 def block(space):
     space.doc.blocks.new("pin").add_circle((0, 0), 1)
     space.add_blockref("pin", (1, 1), dxfattribs=ON)
@@ -101,7 +116,10 @@ DXF = [
     ("branch", branch, DIE, "layer 'die': 3 ends meet at (5, 0) (LINE"),
     ("twice", twice, DIE, "on layer 'die': lies on LINE"),
     ("crossing", crossing, DIE, "LWPOLYLINE 2F on layer 'die': crosses itself at (2, 2)"),
-    ("hole", two_circles, DIE, "layer 'die': 2 curves, with CIRCLE"),
+    ("two dies", two_circles, DIE, "layer 'die': 2 curves, with CIRCLE"),
+    ("hole outside", two_circles_apart, ("--body", "die", "--tolerance", "1e-3"), "on layer 'die' lies beside the one with CIRCLE"),
+    ("hole in a hole", three_circles, ("--body", "die", "--tolerance", "1e-3"), "on layer 'die' lies in the hole with CIRCLE"),
+    ("hole across", circles_that_cross, ("--body", "die", "--tolerance", "1e-3"), "on layer 'die': crosses CIRCLE"),
     ("in space", lambda space: space.add_line((0, 0, 0), (5, 0, 1), dxfattribs=ON), DIE, "on layer 'die': leaves the plane (z from 0 to 1)"),
     ("face", lambda space: space.add_3dface([(0, 0, 0), (1, 0, 0), (1, 1, 1)], dxfattribs=ON), DIE, "3DFACE 2F on layer 'die': is in three dimensions"),
     ("block", block, DIE, "on layer 'die': is a block ('pin')"),

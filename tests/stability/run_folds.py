@@ -168,6 +168,22 @@ def closed_hole(checks):
     checks.small(abs(summary["checks"]["volume_drift_unloaded"]), 2e-3, "hole: volume")
 
 
+def inside_out(checks):
+    """A thin lens in an elastic block without contact is pressed shut in one step: all of its sides go past one another, none crosses another at the
+    end of the step, and the block has passed through itself all the same."""
+    text = "TITLE A lens\nSTATE PLSTN\nKINEM LOG\n"
+    for name, x, y, side in (("ul", -3, 0, ""), ("um", -1, 0, "1 ARC 0. -25."), ("ur", 1, 0, ""), ("ll", -3, -3, ""), ("lm", -1, -3, "3 ARC 0. 25."), ("lr", 1, -3, "")):
+        text += f"BLOCK {name} PL8LS 4 m\n {x} {y} {x + 2} {y} {x + 2} {y + 3} {x} {y + 3}\n 2 1. 2 1.\n" + (f" SIDE {side}\n" if side else "")
+    text += "JOIN ul 2 um 4\nJOIN um 2 ur 4\nJOIN ll 2 lm 4\nJOIN lm 2 lr 4\nJOIN ul 1 ll 3\nJOIN ur 1 lr 3\nLAW m ELA\n 1000. 0.3\n"
+    text += "".join(f"FIXED {name} 1 Y\n" for name in ("ll", "lm", "lr")) + "FIXED ll 4 X\n" + "".join(f"MOVE {name} 3 Y down\n" for name in ("ul", "um", "ur"))
+    path = os.path.join(checks.folder, "lens.lag")
+    with open(path, "w", encoding="utf-8") as deck:
+        deck.write(text + "LIC down\n 0. 0. 1. -0.3\nSTRAT 1. 1.E-3 1. 8 3\nEND\n")
+    done = subprocess.run([os.path.join(BIN, "lagamine"), path, "--out", os.path.join(checks.folder, "lens")], check=False, stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True)
+    checks.that(done.returncode == 3 and "um passes through itself" in done.stderr, "lens: told", f"{done.returncode} {done.stderr[-300:]}")
+
+
 def linked(link, width, low, die, place, loads):
     """A block on another one, alone or joined by a soft link into one body."""
     text = "TITLE linked blocks\nSTATE PLSTN\nKINEM LOG\n" + block("low", (0, 10), (0, 2), (10, 2))
@@ -265,7 +281,7 @@ def crushed_ring(checks):
 
 def main():
     checks = Checks()
-    for case in (cees, open_walls, detection, unasked, crushed_tube, crushed_on_new_meshes, closed_hole, remeshed, friction, slot):
+    for case in (cees, open_walls, detection, unasked, crushed_tube, crushed_on_new_meshes, closed_hole, inside_out, remeshed, friction, slot):
         case(checks)
     if "-a" in sys.argv[1:]:
         crushed_ring(checks)

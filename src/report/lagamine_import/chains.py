@@ -1,5 +1,5 @@
-"""Pieces joined end to end: one contour a layer, walked with the part on the left."""
-from dataclasses import dataclass
+"""Pieces joined end to end: one contour a layer, of a body with its holes, walked with the part on the left."""
+from dataclasses import dataclass, field
 from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -19,17 +19,29 @@ class Contour:
     pieces: List[Piece]
     closed: bool
     side_by: str = ""        # how the side of the part was found
+    holes: List[List[Piece]] = field(default_factory=list)
+
+    def rows(self) -> List[Piece]:
+        """Pieces in the order of the card's rows: around the contour, then around each hole."""
+        return [*self.pieces, *(piece for hole in self.holes for piece in hole)]
+
+    def inside(self) -> np.ndarray:
+        """Points of a lattice in the body (m, 2)."""
+        points = points_inside(self.curve())
+        for hole in self.holes:
+            points = points[~is_within(joined_curve(hole, 16), points)]
+        return points
 
     def curve(self, n: int = 16) -> np.ndarray:
         """Points along it (n, 2)."""
         return joined_curve(self.pieces, n)
 
 
-def chain(pieces: Sequence[Piece], gap: float, must_close: bool, layer: str, mistakes: Mistakes) -> Optional[Tuple[List[Piece], bool]]:
-    """All pieces of a layer in one curve, and whether it is closed; none where there are mistakes.
+def chain(pieces: Sequence[Piece], gap: float, must_close: bool, layer: str, mistakes: Mistakes) -> Optional[List[Tuple[List[Piece], bool]]]:
+    """The curves of a layer, and whether each is closed; none where there are mistakes.
 
-    Ends nearer to each other than `gap` [length] are one point. A curve that branches, comes twice, or is in several parts is refused, and an
-    open one where it must close.
+    Ends nearer to each other than `gap` [length] are one point. A curve that branches or comes twice is refused; one in several parts unless they
+    must close and do; and an open one where it must close.
     """
     before = len(mistakes.lines)
     pieces = _without_repeats(pieces, gap, mistakes)
@@ -44,7 +56,7 @@ def chain(pieces: Sequence[Piece], gap: float, must_close: bool, layer: str, mis
     parts = _walks(pieces, at_node)
     closed = [walk[1] for walk in parts]
     loose = [k for k, number in enumerate(degree) if number == 1]
-    if len(parts) > 1:
+    if len(parts) > 1 and not (must_close and all(closed)):
         _refuse_parts(parts, pieces, nodes, at_node, loose, layer, mistakes)
     elif must_close and not closed[0]:
         a, b = loose
@@ -52,8 +64,7 @@ def chain(pieces: Sequence[Piece], gap: float, must_close: bool, layer: str, mis
                      f"({pieces[at_node[b][0][0]].where}), {_far(nodes[a], nodes[b])} apart: expected it closed (--gap joins ends)")
     if len(mistakes.lines) > before:
         return None
-    walk, is_closed = parts[0]
-    return _with_common_ends(walk, is_closed), is_closed
+    return [(_with_common_ends(walk, is_closed), is_closed) for walk, is_closed in parts]
 
 
 def _far(a: np.ndarray, b: np.ndarray) -> str:
@@ -125,7 +136,7 @@ def _refuse_parts(parts, pieces, nodes, at_node, loose, layer: str, mistakes: Mi
                      f"({pieces[at_node[b][0][0]].where}), {far:.4g} apart: expected one curve (--gap joins ends)")
     else:
         firsts = ", ".join(walk[0].where for walk, _ in parts[:3])
-        mistakes.add(f"layer '{layer}'", f"{len(parts)} curves, with {firsts}: expected one a layer; a contour with holes is none of a BODY card")
+        mistakes.add(f"layer '{layer}'", f"{len(parts)} curves, with {firsts}: expected one a layer")
 
 
 def _with_common_ends(walk: List[Piece], closed: bool) -> List[Piece]:
@@ -156,6 +167,17 @@ def crossings(pieces: Sequence[Piece], closed: bool) -> List[Tuple[Piece, Piece,
             if joined and min(np.hypot(*(place - end)) for end in ends) <= 1e-6 * size:
                 continue
             found.append((pieces[i], pieces[j], place))
+    return found
+
+
+def crossings_of(one: Sequence[Piece], other: Sequence[Piece]) -> List[Tuple[Piece, Piece, np.ndarray]]:
+    """Where two curves cross: pairs of pieces and the place."""
+    found = []
+    for a in one:
+        for b in other:
+            place = _meeting(a.curve(16), b.curve(16))
+            if place is not None:
+                found.append((a, b, place))
     return found
 
 
@@ -213,8 +235,13 @@ def points_inside(contour: np.ndarray, n: int = 40) -> np.ndarray:
     low, high = contour.min(axis=0), contour.max(axis=0)
     x, y = (low[k] + (high[k] - low[k]) * (np.arange(n) + 0.5) / n for k in range(2))
     grid = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    return grid[is_within(contour, grid)]
+
+
+def is_within(contour: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Which of points (m, 2) are inside a closed contour (n, 2)."""
     a, b = contour[:-1], contour[1:]
-    above = (a[:, 1] > grid[:, 1:2]) != (b[:, 1] > grid[:, 1:2])
+    above = (a[:, 1] > points[:, 1:2]) != (b[:, 1] > points[:, 1:2])
     with np.errstate(divide="ignore", invalid="ignore"):
-        cut = a[:, 0] + (grid[:, 1:2] - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
-    return grid[(above & (grid[:, :1] < cut)).sum(axis=1) % 2 == 1]
+        cut = a[:, 0] + (points[:, 1:2] - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
+    return (above & (points[:, :1] < cut)).sum(axis=1) % 2 == 1

@@ -171,7 +171,7 @@ def _contour(options, ending: str, mistakes: Mistakes):
     cards, words = [], [", ".join(f"{contour.card} {contour.name}" for contour in contours)]
     for contour in contours:
         cards += contour_rows(contour, options.npoint, options.mean, options.law, options.pilot, options.tolerance or 0.0)
-        forms = {form: sum(piece.form == form for piece in contour.pieces) for form in ("SEGM", "ARC", "PARAB")}
+        forms = {form: sum(piece.form == form for piece in contour.rows()) for form in ("SEGM", "ARC", "PARAB")}
         words.append(f"{contour.card} {contour.name}: " + ", ".join(f"{number} {form}" for form, number in forms.items() if number)
                      + (", closed" if contour.closed else "") + f"; the part is on the left: {contour.side_by}")
     return cards, words + wishes.notes, contour_sketch(contours, os.path.basename(options.file))

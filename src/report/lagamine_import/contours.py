@@ -4,10 +4,10 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from .chains import Contour, chain, crossings, points_inside, side_of, turned_back, walked_around
+from .chains import Contour, chain, crossings, crossings_of, is_within, side_of, turned_back, walked_around
 from .mistakes import Mistakes, at
 from .names import Names
-from .pieces import Piece
+from .pieces import Piece, joined_curve, signed_area
 
 GAP = 1e-6      # ends nearer than this share of the size of the drawing are one point, where --gap does not say otherwise
 
@@ -62,7 +62,7 @@ def _moved(piece: Piece, wishes: ContourWishes) -> Piece:
 
 
 def _contour(card: str, layer: str, pieces: List[Piece], gap: float, names: Names, mistakes: Mistakes) -> Optional[Contour]:
-    """The curve of a layer, a body's counter-clockwise."""
+    """The curve of a layer, a body's counter-clockwise and its holes clockwise."""
     name = names.name(layer, "layer")
     short = [piece for piece in pieces if piece.size() <= gap]
     for piece in short:
@@ -70,15 +70,29 @@ def _contour(card: str, layer: str, pieces: List[Piece], gap: float, names: Name
     found = chain(pieces, gap, card == "BODY", layer, mistakes) if not short else None
     if found is None:
         return None
-    walk, closed = found
-    crossed = crossings(walk, closed)
+    crossed = [place for walk, closed in found for place in crossings(walk, closed)]
+    crossed += [place for k, (walk, _) in enumerate(found) for other, _ in found[:k] for place in crossings_of(other, walk)[:1]]
     for one, other, place in crossed:
         mistakes.add(one.where, f"crosses {other.where if other.where != one.where else 'itself'} at {at(place)}")
     if crossed:
         return None
-    if closed:
-        walk = walked_around(walk)
-    return Contour(card, name, walk, closed, "inside the contour" if card == "BODY" else "")
+    walks = [walked_around(walk) if closed else walk for walk, closed in found]
+    walks.sort(key=lambda walk: -abs(signed_area(joined_curve(walk, 16)[:-1])))
+    if not _are_holes(walks, layer, mistakes):
+        return None
+    return Contour(card, name, walks[0], found[0][1], "inside the contour" if card == "BODY" else "", [turned_back(walk) for walk in walks[1:]])
+
+
+def _are_holes(walks: List[List[Piece]], layer: str, mistakes: Mistakes) -> bool:
+    """All curves but the first, the largest one, lie in that one and in no other."""
+    curves = [joined_curve(walk, 16) for walk in walks]
+    before = len(mistakes.lines)
+    for k, walk in enumerate(walks[1:], 1):
+        around = [j for j, curve in enumerate(curves[:k]) if is_within(curve, curves[k][:1])[0]]
+        if around != [0]:
+            where = f"in the hole with {walks[around[-1]][0].where}" if around else f"beside the one with {walks[0][0].where}"
+            mistakes.add(f"layer '{layer}'", f"the curve with {walk[0].where} lies {where}: expected one body a layer, and its holes inside it")
+    return len(mistakes.lines) == before
 
 
 def _orient(die: Contour, bodies: Sequence[Contour], wishes: ContourWishes, mistakes: Mistakes) -> None:
@@ -93,7 +107,7 @@ def _orient(die: Contour, bodies: Sequence[Contour], wishes: ContourWishes, mist
     elif bodies:
         votes = []
         for body in bodies:
-            for point in points_inside(body.curve(16)):
+            for point in body.inside():
                 side, far, beyond = side_of(curve, point)
                 if side and not beyond:
                     votes.append((far, side, body.name))

@@ -34,9 +34,9 @@ def contour_rows(contour: Contour, npoint: int, mean: bool, law: Optional[str], 
     else:
         head = f"BODY   {contour.name} PL8LS {npoint} {law or contour.name}" + (" MEAN" if mean else "")
     lines = [head]
-    rows = [_row(piece, tolerance) for piece in contour.pieces]
+    rows = [_row(piece, tolerance) for piece in contour.rows()]
     wide = max(map(len, rows))
-    for k, (row, piece) in enumerate(zip(rows, contour.pieces), 1):
+    for k, (row, piece) in enumerate(zip(rows, contour.rows()), 1):
         lines.append(f"   {row:<{min(wide, 100)}}   ! {k}: {_ascii(piece.where)}")
     return lines
 

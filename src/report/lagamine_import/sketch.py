@@ -3,6 +3,8 @@ from typing import List
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 
 from lagamine_report.geometry import SIDES, all_sides, hatching, side_curves
 from lagamine_report.parabolas import elements_patch, sides_patch
@@ -11,6 +13,7 @@ from lagamine_report.style import BODIES, DIE_LINE, INK, LINES, SOFT, figure
 
 from .chains import Contour
 from .mesh_build import Mesh
+from .pieces import joined_curve
 
 MOST_NUMBERS = 80
 
@@ -56,12 +59,15 @@ def contour_sketch(contours: List[Contour], title: str) -> bytes:
     fig, axes = _axes(low, high, title)
     for k, (contour, curve) in enumerate(zip(contours, curves)):
         if contour.card == "BODY":
-            axes.fill(*curve.T, color=BODIES[k % len(BODIES)], lw=0)
+            around = [curve, *(joined_curve(hole, 32) for hole in contour.holes)]
+            axes.add_artist(PathPatch(Path.make_compound_path(*[Path(points, closed=True) for points in around]), color=BODIES[k % len(BODIES)], lw=0))
+            for hole in around[1:]:
+                axes.plot(*hole.T, color=INK, lw=1.5)
         else:
             axes.add_collection(LineCollection(hatching(curve, 0.012 * size, 0.02 * size), colors=SOFT, linewidths=0.7))
         colour = INK if contour.card == "BODY" else DIE_LINE
         axes.plot(*curve.T, color=colour, lw=1.5, label=f"{contour.card} {contour.name}: part {_words(contour)}")
-        ends = np.array([piece.start for piece in contour.pieces] + [contour.pieces[-1].end])
+        ends = np.array([piece.start for piece in contour.rows()] + [contour.pieces[-1].end])
         axes.plot(*ends.T, ls="none", marker="o", ms=2.6, color=colour)
         _numbers(axes, contour, size)
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.06), ncols=1)
@@ -74,13 +80,14 @@ def _words(contour: Contour) -> str:
 
 def _numbers(axes, contour: Contour, size: float) -> None:
     """Numbers of rows on the part's side, an arrow on the longest piece."""
-    lengths = [piece.size() for piece in contour.pieces]
+    pieces = contour.rows()
+    lengths = [piece.size() for piece in pieces]
     longest = int(np.argmax(lengths))
-    for k, piece in enumerate(contour.pieces):
+    for k, piece in enumerate(pieces):
         a, m, b = piece.at([0.49, 0.5, 0.51])
         way = (b - a) / np.hypot(*(b - a))
         left = np.array([-way[1], way[0]])
-        if len(contour.pieces) <= MOST_NUMBERS and lengths[k] > 0.03 * size:
+        if len(pieces) <= MOST_NUMBERS and lengths[k] > 0.03 * size:
             axes.text(*(m + 0.022 * size * left), str(k + 1), fontsize=7.5, ha="center", va="center", color=LINES[0])
         if k == longest:
             axes.annotate("", m + 0.03 * size * way, m - 0.03 * size * way, arrowprops={"arrowstyle": "-|>", "color": LINES[1], "lw": 1.4})
