@@ -10,7 +10,7 @@ module corrected_contours
   use side_tags, only: side_tags_t
   implicit none
   private
-  public :: contour_options_t, contour_t, contact_limit_t, contour_report_t
+  public :: contour_options_t, contour_t, contact_limit_t, contour_report_t, some_contours
 
   type :: contour_options_t
     !> A corner is where the tangent turns by more than this [radian].
@@ -75,5 +75,23 @@ module corrected_contours
     !> Contact intervals dropped because they run backwards along their die.
     integer :: backward_intervals = 0
   end type contour_report_t
+
+contains
+
+  !> Those of the contours that are chosen. (Types with allocatable components are copied one by one.)
+  pure function some_contours(contours, chosen) result(some)
+    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
+    logical, intent(in) :: chosen(:)             !! (ncontour)
+    type(contour_t), allocatable :: some(:)
+    integer :: c, k
+
+    allocate (some(count(chosen)))
+    k = 0
+    do c = 1, size(contours)
+      if (.not. chosen(c)) cycle
+      k = k + 1
+      some(k) = contours(c)
+    end do
+  end function some_contours
 
 end module corrected_contours

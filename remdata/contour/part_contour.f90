@@ -9,7 +9,7 @@ module part_contour
   use boundary_sides, only: find_loops, loop_t, loops_found, shared_by_three
   use contact_ends, only: contact_end_t
   use contact_placement, only: place_contacts
-  use corrected_contours, only: contact_limit_t, contour_options_t, contour_report_t, contour_t
+  use corrected_contours, only: contact_limit_t, contour_options_t, contour_report_t, contour_t, some_contours
   use die_closest_points, only: point_on_side
   use errors, only: error_t, exit_bug, fail
   use folded_sides, only: open_folds
@@ -107,20 +107,14 @@ contains
     type(contour_t), allocatable :: left(:)
     real(wp) :: extent(size(contours))
     logical :: stays(size(contours))
-    integer :: k, n
+    integer :: k
 
     do k = 1, size(contours)
       extent(k) = size_of_boundary(contours(k)%boundary)
     end do
     stays = extent > closed_within*maxval(extent)
     if (all(stays)) return
-    allocate (left(count(stays)))
-    n = 0
-    do k = 1, size(contours)
-      if (.not. stays(k)) cycle
-      n = n + 1
-      left(n) = contours(k)
-    end do
+    allocate (left, source=some_contours(contours, stays))
     call move_alloc(left, contours)
   end subroutine drop_closed_holes
 

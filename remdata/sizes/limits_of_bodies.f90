@@ -7,7 +7,7 @@ module limits_of_bodies
   use size_windows, only: size_limits_t
   implicit none
   private
-  public :: bodies_have_sizes, limits_of_all, limits_of_body, materials_of_contours, some_contours
+  public :: bodies_have_sizes, limits_of_all, limits_of_body, materials_of_contours
 
 contains
 
@@ -49,21 +49,5 @@ contains
       material(c) = count([(is_solid(scene%groups(g)), g=1, group_of(scene, contours(c)%loop))])
     end do
   end function materials_of_contours
-
-  !> Those of the contours that are chosen. (Types with allocatable components are copied one by one.)
-  pure function some_contours(contours, chosen) result(some)
-    type(contour_t), intent(in) :: contours(:)   !! (ncontour)
-    logical, intent(in) :: chosen(:)             !! (ncontour)
-    type(contour_t), allocatable :: some(:)
-    integer :: c, k
-
-    allocate (some(count(chosen)))
-    k = 0
-    do c = 1, size(contours)
-      if (.not. chosen(c)) cycle
-      k = k + 1
-      some(k) = contours(c)
-    end do
-  end function some_contours
 
 end module limits_of_bodies

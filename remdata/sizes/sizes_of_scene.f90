@@ -6,12 +6,12 @@ module sizes_of_scene
   use contact_misfits, only: needs_of_misfits
   use contour_volume, only: volume_inside
   use contour_needs, only: geometry_settings_t, needs_of_boundary, needs_of_die
-  use corrected_contours, only: contour_t
+  use corrected_contours, only: contour_t, some_contours
   use dies, only: is_deformable
   use facing_sizes, only: needs_of_others
   use fields, only: pilot_field
   use kinds, only: wp
-  use limits_of_bodies, only: bodies_have_sizes, limits_of_all, limits_of_body, materials_of_contours, some_contours
+  use limits_of_bodies, only: bodies_have_sizes, limits_of_all, limits_of_body, materials_of_contours
   use scene, only: axisymmetric, scene_t
   use remesh_defaults, only: elements_at_first
   use size_field, only: join_bodies, need_t, old_mesh_t, requested_size, set_up_sizes, size_field_t, size_limits_t
