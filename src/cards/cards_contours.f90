@@ -61,7 +61,7 @@ contains
     integer :: ends(max(nrow, 1)), loops(max(nrow, 1))
     real(wp) :: largest
     logical :: closed
-    integer :: first, form, i, k, n
+    integer :: first, form, i, k, n, number
 
     call words_of(piece_words, forms)
     allocate (pieces(2, 3, 0))
@@ -69,13 +69,13 @@ contains
     first = 1
     closed = .false.
     largest = 0
-    loops = 1
+    number = 1
     do k = 1, max(nrow, 1)
-      if (k > 1) loops(k) = loops(k - 1)
       if (closed) then
         first = n + 1
-        loops(k) = loops(k) + 1
+        number = number + 1
       end if
+      loops(k) = number
       call cursor%next_row('one of '//piece_words//' and its points')
       call cursor%name('one of '//piece_words, forms, form)
       i = n
