@@ -83,11 +83,14 @@ contains
         call add_body_contact_ends(contours(i)%contacts, scene%dies, loops(k), joints)
       end do
       call keep_volume(scene, x, uncorrected, held, options, joints, contours(k))
+      report%folds = [report%folds, contours(k)%laps]
+    end do
+    call drop_closed_holes(contours)
+    do k = 1, size(contours)
       call list_limits(contours(k), report%limits)
       do i = 1, size(contours(k)%points)
         report%points = reshape([report%points, contours(k)%points(i)%point], [2, size(report%points, 2) + 1])
       end do
-      report%folds = [report%folds, contours(k)%laps]
       report%off_ends = max(report%off_ends, off_ends(contours(k), x)/size_of_boundary(contours(k)%boundary))
       report%small_gaps = report%small_gaps + count([(contours(k)%contacts(i)%interval%small_gap, i=1, size(contours(k)%contacts))])
       if (largest_gap(contours(k)%boundary) > closed_within*size_of_boundary(contours(k)%boundary)) &
@@ -97,7 +100,6 @@ contains
     report%largest_shift = maxval([0.0_wp, abs(contours%shift)])
     report%largest_move = maxval([0.0_wp, contours%largest_move])
     report%volume_error = maxval([0.0_wp, abs(contours%volume_after - contours%volume_before)/abs(contours%volume_before)])
-    call drop_closed_holes(contours)
     call refuse_laps(scene, contours%boundary, contours%loop, contours%tags, report%laps, error)
   end subroutine build_contours
 

@@ -1,8 +1,8 @@
 !> The contours of a BODY card: the outer one and those of holes, each around with the part on its left.
 module contour_loops
+  use closed_parabolas, only: area_in, lies_within
   use deck_cursor, only: cursor_t
   use kinds, only: wp
-  use remesh_defaults, only: area_in
   use text, only: to_text
   use zone_marks, only: contour_card_t
   implicit none
@@ -49,31 +49,6 @@ contains
 
     allocate (pieces, source=contour%pieces(:, :, pack([(k, k=1, size(contour%loop))], contour%loop == loop)))
   end function pieces_of
-
-  !> All ends and middle points of pieces are inside a closed contour of others, by the crossings of a ray along x with its chords,
-  !> two to each piece.
-  pure function lies_within(pieces, others) result(within)
-    real(wp), intent(in) :: pieces(:, :, :), others(:, :, :)   !! (2, 3, npiece) [length]
-    logical :: within
-    logical :: inside
-    integer :: i, j, k, m
-
-    within = .true.
-    do k = 1, size(pieces, 3)
-      do i = 1, 2
-        inside = .false.
-        do j = 1, size(others, 3)
-          do m = 1, 2
-            associate (x => pieces(:, i, k), a => others(:, m, j), b => others(:, m + 1, j))
-              if ((a(2) > x(2)) .eqv. (b(2) > x(2))) cycle
-              if (x(1) < a(1) + (x(2) - a(2))*(b(1) - a(1))/(b(2) - a(2))) inside = .not. inside
-            end associate
-          end do
-        end do
-        within = within .and. inside
-      end do
-    end do
-  end function lies_within
 
   !> Where a contour begins.
   pure function place(pieces) result(words)

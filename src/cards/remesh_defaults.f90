@@ -1,14 +1,14 @@
 !> What a REMSH card means where it does not say: limits at which a new mesh is due, and sizes of elements of bodies that are given
 !> by their contours. `--check` prints them with those that are given.
 module remesh_defaults
+  use closed_parabolas, only: area_in
   use kinds, only: wp
-  use plane_vectors, only: cross
   use remesher_options, only: remesher_options_t
   use remeshing, only: aspect_ratio, largest_angle, least_angle, middle_share, remesh_rules_t, scaled_jacobian
   use vectors, only: length_of
   implicit none
   private
-  public :: corner, elements_at_first, area_in, facing_ratio, narrow, set_default_limits, set_default_sizes
+  public :: corner, elements_at_first, facing_ratio, narrow, set_default_limits, set_default_sizes
 
   !> Shapes at which an element does its work badly but does it still, for every single element: a new mesh has none like these
   !> (angles from 20 degrees, scaled Jacobians from 0.25, middle nodes in the middle third), and each is some steps of distortion
@@ -84,21 +84,6 @@ contains
     end if
     if (options%most_elements == 0) options%most_elements = growth*ceiling(sum(area/own**2))
   end subroutine set_default_sizes
-
-  !> Area on the left of closed parabolas: half the integral of x dy - y dx, exact for each [length^2].
-  pure function area_in(pieces) result(area)
-    real(wp), intent(in) :: pieces(:, :, :)   !! (2, 3, npiece) [length]
-    real(wp) :: area
-    integer :: k
-
-    area = 0
-    do k = 1, size(pieces, 3)
-      associate (a => pieces(:, 1, k) - pieces(:, 1, 1), m => pieces(:, 2, k) - pieces(:, 1, 1), &
-                 b => pieces(:, 3, k) - pieces(:, 1, 1))
-        area = area + 0.5_wp*cross(a, b) + 2*cross(m - a, b - a)/3
-      end associate
-    end do
-  end function area_in
 
   !> Length of the chords of parabolas, two to each: a size, not a measure [length].
   pure function perimeter_of(pieces) result(length)

@@ -1,5 +1,5 @@
-!> Bodies that pass through themselves: free sides of one body that cross at the end of a step, and contours that have turned inside
-!> out in it, as that of a small hole does whose sides have all gone past one another.
+!> Bodies that pass through themselves: free sides of one body that cross at the end of a step, and holes that have turned inside
+!> out in it, where all sides of a small one have gone past one another.
 !>
 !> Nothing but contact keeps the sides of a body apart, so a body without it may fold through itself in equilibrium. Sides that
 !> face each other in contact overlap by the depth of contact: where a point of either is in contact, they do not count. Nor does a
@@ -8,6 +8,7 @@
 module own_crossings
   use arc_crossings, only: crossings_between, find_meeting_arcs, most_crossings
   use bodies, only: bodies_of_nodes, elements_at_middles
+  use closed_parabolas, only: area_beside
   use contact_state, only: at_piece, at_status
   use dofs, only: dofs_t
   use fields, only: displacement_field
@@ -26,6 +27,8 @@ module own_crossings
   !> A loop of at most so many sides counts when its area is above this share of the product of the lengths of the sides that cross.
   integer, parameter :: few_sides = 4
   real(wp), parameter :: small_area = 1.0e-2_wp
+  !> A hole has turned inside out when the body lies upon itself in it on more than this share of the square of its length.
+  real(wp), parameter :: turned_area = 1.0e-6_wp
 
   !> Free sides of all bodies.
   type :: free_sides_t
@@ -87,6 +90,7 @@ contains
     integer, intent(in) :: nnode
     integer, allocatable, intent(out) :: contour(:)   !! (nside)
     integer :: begins(nnode), i, n, side
+    integer, parameter :: of_none = -1
 
     begins = 0
     do i = 1, size(nodes, 2)
@@ -103,9 +107,11 @@ contains
         contour(side) = n
         side = begins(nodes(3, side))
       end do
-      if (side /= i) where (contour == n) contour = -n
+      if (side == i) cycle
+      where (contour == n) contour = of_none
+      n = n - 1
     end do
-    contour = max(contour, 0)
+    where (contour == of_none) contour = 0
   end subroutine number_contours
 
   !> A place where two sides of a body cross at the end of a step: the first one in the order of sides.
@@ -126,7 +132,7 @@ contains
     do i = 1, size(arcs)
       arcs(i)%points = present_nodes(scene, dofs, solution, du, sides%nodes(:, i))
     end do
-    call find_turned_contour(scene, dofs, solution, sides, arcs, crossing)
+    call find_turned_hole(scene, dofs, solution, sides, arcs, crossing)
     if (crossing%found) return
     call find_meeting_arcs(arcs, pairs)
     do m = 1, size(pairs, 2)
@@ -151,21 +157,22 @@ contains
     end do
   end subroutine find_own_crossing
 
-  !> The first contour around which the area has changed its sign in the step, where none of its nodes is in contact. Area: that on
-  !> the left of the sides, half the integral of x dy - y dx over parabolas.
-  subroutine find_turned_contour(scene, dofs, solution, sides, arcs, crossing)
+  !> The first hole that has turned inside out in the step, where none of its nodes is in contact: the area on the left of its
+  !> sides, which is negative, or nothing where it is a crack, is positive at the end. The contour around a body has the largest.
+  subroutine find_turned_hole(scene, dofs, solution, sides, arcs, crossing)
     type(scene_t), intent(in) :: scene
     type(dofs_t), intent(in) :: dofs
     type(solution_t), intent(in) :: solution
     type(free_sides_t), intent(in) :: sides
     type(offset_parabola_t), intent(in) :: arcs(:)   !! of the sides at the end of the step
     type(own_crossing_t), intent(inout) :: crossing
-    real(wp) :: before(maxval(sides%contour)), after(maxval(sides%contour))
+    real(wp), dimension(maxval(sides%contour)) :: before, after, length, least
     integer :: first(maxval(sides%contour)), c, i
-    logical :: held(size(scene%mesh%coordinates, 2))
+    logical :: held(size(scene%mesh%coordinates, 2)), turned(maxval(sides%contour))
 
     before = 0
     after = 0
+    length = 0
     first = 0
     do i = 1, size(arcs)
       c = sides%contour(i)
@@ -175,29 +182,24 @@ contains
         before(c) = before(c) + area_beside(present_nodes(scene, dofs, solution, [real(wp) ::], sides%nodes(:, i)), origin)
         after(c) = after(c) + area_beside(arcs(i)%points, origin)
       end associate
+      length(c) = length(c) + length_of(arcs(i)%points(:, 3) - arcs(i)%points(:, 1))
     end do
-    if (.not. any(before*after < 0)) return
+    least = turned_area*length**2
+    turned = before <= least .and. after > least
+    do c = 1, size(first)
+      if (turned(c)) turned(c) = before(c) < maxval(before, mask=sides%body(first) == sides%body(first(c)))
+    end do
+    if (.not. any(turned)) return
     held = nodes_in_contact(scene, solution)
     do c = 1, size(first)
-      if (.not. before(c)*after(c) < 0) cycle
+      if (.not. turned(c)) cycle
       if (any([(sides%contour(i) == c .and. any(held(sides%nodes(:, i))), i=1, size(arcs))])) cycle
       crossing%found = .true.
       crossing%group = sides%group(first(c))
       crossing%point = arcs(first(c))%points(:, 2)
-      crossing%thinned = before(c) > 0
       return
     end do
-  end subroutine find_turned_contour
-
-  !> Area between a parabola and an origin [length^2].
-  pure function area_beside(points, origin) result(area)
-    real(wp), intent(in) :: points(2, 3), origin(2)   !! [length]
-    real(wp) :: area
-
-    associate (a => points(:, 1) - origin, m => points(:, 2) - origin, b => points(:, 3) - origin)
-      area = 0.5_wp*cross(a, b) + 2*cross(m - a, b - a)/3
-    end associate
-  end function area_beside
+  end subroutine find_turned_hole
 
   !> The place on the second side is behind the one on the first, on the side of the body.
   pure function is_behind(arcs, xi) result(yes)

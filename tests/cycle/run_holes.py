@@ -16,30 +16,10 @@ import sys
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from remeshed import cycle, tries  # noqa: E402
-from run_planes_remesh import CASES, SAME_FORCE  # noqa: E402
+from run_planes_remesh import BODY, CASES, SAME_FORCE  # noqa: E402
 from support import DONE, Checks, history, said, write  # noqa: E402
 
 SAME_TUBE, FEW = 0.03, 8
-DECK = """TITLE  A body with a hole between two plates
-STATE  PLSTN
-KINEM  LOG
-BODY   part PL8LS 4 metal
-{contour}LAW    metal EPLA
-   200000. 0.3
-   LINEAR 300. 300.
-LAW    film COUL2D
-   PENETR 1.E-3   PHI 0.1{augment}
-DIE    upper PILOT 0. 10.
-   SEGM   40. 10.   -40. 10.
-CNT2D  part {rows} upper film
-{support}LIC    press
-   0. 0.   1. -{travel}
-MOVE   upper Y press
-STRAT  0.01 1.E-5 0.02   5 3
-REMSH
-{sizes}SAVE   10
-END
-"""
 LOWER = """DIE    lower PILOT 0. -10.
    SEGM   -40. -10.   40. -10.
 CNT2D  part {rows} lower film
@@ -68,7 +48,7 @@ SIZES = "   SIZE   0.3 1.\n"
 def run_of(checks, name, contour, rows, support, **more):
     """Folder and history of a cycle that ends, else None."""
     folder = checks.path(name)
-    text = DECK.format(contour=contour, rows=rows, support=support.format(rows=more.pop("below", rows)), **{"augment": "", "sizes": "", **more})
+    text = BODY.format(state="PLSTN", contour=contour, mu=0.1, height=10, left="-40.", rows=rows, support=support.format(rows=more.pop("below", rows)), **{"sizes": "", **more})
     result = cycle(write(folder + ".lag", text), folder, "--quiet")
     if not checks.that(result.returncode == DONE, f"{name}: ends", said(result)):
         return None
@@ -89,7 +69,7 @@ def closed_hole(checks):
 
 
 def rolling_tube(checks):
-    same = {"travel": 6, "augment": "   AUGMENT 10", "sizes": SIZES}
+    same = {"travel": 6, "sizes": SIZES}
     whole = run_of(checks, "tube", TUBE, "1 2", LOWER, **same)
     quarter = run_of(checks, "quarter", QUARTER, "2", "FIXED  part 1 Y\nFIXED  part 3 X\n", **same)
     if whole is None or quarter is None:

@@ -31,19 +31,17 @@ BODY   part PL8LS 4 metal
 LAW    film COUL2D
    PENETR 1.E-3   PHI {mu}
 DIE    upper PILOT 0. {height}
-   SEGM   40. {height}   -2. {height}
-CNT2D  part 2 3 upper film
-FIXED  part 1 Y
-FIXED  part 4 X
-LIC    press
+   SEGM   40. {height}   {left} {height}
+CNT2D  part {rows} upper film
+{support}LIC    press
    0. 0.   1. -{travel}
 MOVE   upper Y press
 STRAT  0.01 1.E-5 0.02   5 3
 REMSH
-PROBE  support REACT Y part 1
-SAVE   10
+{sizes}SAVE   10
 END
 """
+PLANES = {"left": "-2.", "rows": "2 3", "support": "FIXED  part 1 Y\nFIXED  part 4 X\nPROBE  support REACT Y part 1\n", "sizes": ""}
 PORE = """   SEGM   2. 0.   10. 0.
    SEGM   10. 0.   10. 10.
    SEGM   10. 10.   0. 10.
@@ -89,7 +87,7 @@ def main():
         on_blocks(checks)
     for name, (numbers, force, work) in CASES.items():
         folder = checks.path(name)
-        result = cycle(write(folder + ".lag", BODY.format(**numbers)), folder, "--quiet")
+        result = cycle(write(folder + ".lag", BODY.format(**PLANES, **numbers)), folder, "--quiet")
         if not checks.that(result.returncode == DONE, f"{name}: ends", said(result)):
             continue
         refused = [row["reason"] for row in tries(folder) if row["accepted"] == "n"]
