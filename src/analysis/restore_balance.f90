@@ -20,7 +20,6 @@ module restore_balance
   use external_loads, only: external_forces
   use fields, only: displacement_field, pilot_field
   use kinds, only: wp
-  use newton, only: solve_step
   use own_contact, only: met_by_itself
   use path_record, only: settle_path
   use quadrature, only: is_control_point, rule_along
@@ -30,6 +29,7 @@ module restore_balance
   use scene, only: scene_t
   use solution, only: solution_t
   use state_variables, only: find_variable
+  use step_equilibrium, only: solve_step
   use step_outcome, only: outcome_t
   use system, only: wall_seconds
   use vectors, only: length_of

@@ -97,7 +97,7 @@ module solution
     !> Largest share of the spurious mode in the motion of an element (spurious_mode), and the element.
     real(wp) :: worst_spurious = 0.0_wp
     integer :: spurious_group = 0, spurious_element = 0
-    !> The last equilibrium is not stable, and no stable one was found (newton): so it goes on.
+    !> The last equilibrium is not stable, and no stable one was found (step_equilibrium): so it goes on.
     logical :: stays_unstable = .false.
     !> Steps whose equilibrium is not stable (stability), and the end of the first of them [time].
     integer :: unstable_steps = 0

@@ -64,7 +64,7 @@ module equations
     !> New contact comes in softly in the next attempt at the step, and with this share of its penalties now (soft_contact).
     logical :: softly = .false.
     real(wp) :: penalty_share = 1.0_wp
-    !> Corrections lead downhill alone: the equilibrium found before was not stable (newton). One that is not is taken.
+    !> Corrections lead downhill alone: the equilibrium found before was not stable (step_equilibrium). One that is not is taken.
     logical :: downhill = .false., takes_unstable = .false.
     !> With a load factor: shares of corrections are taken that keep the residual below a ceiling (line_search).
     logical :: below_ceiling = .false.

@@ -12,10 +12,10 @@ module first_step_parts
   use external_loads, only: external_forces
   use fields, only: displacement_field
   use kinds, only: wp
-  use newton, only: solve_step
   use residual_parts, only: first_parts, next_part, residual_parts_t
   use scene, only: scene_t
   use solution, only: group_state_t, solution_t
+  use step_equilibrium, only: solve_step
   use step_outcome, only: outcome_t
   use text, only: to_text
   implicit none

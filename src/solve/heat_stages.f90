@@ -17,9 +17,9 @@ module heat_stages
   use heat_error, only: diagonal, estimate_error, flows, weight
   use kinds, only: wp
   use kinetics_error, only: content_error_of_path, keep_piece, path_piece_t
-  use newton, only: solve_step
   use scene, only: role_heat_contact, scene_t
   use solution, only: solution_t
+  use step_equilibrium, only: solve_step
   use step_outcome, only: outcome_t
   use strategy, only: scheme_tr_bdf2
   use text, only: to_text

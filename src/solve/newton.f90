@@ -9,8 +9,9 @@ module newton
   use contact_heat_tangent, only: couples_contact, follow_contact
   use convergence, only: heat_in_balance, pilots_in_equilibrium, relative_motion, relative_residual, weigh_quantities
   use corrections, only: solve_correction
-  use elem_api, only: block_done, mode_advance, report_t
+  use elem_api, only: block_done, report_t
   use equations, only: equations_t
+  use equilibrium_check, only: check_equilibrium
   use evaluation, only: evaluate, is_apart
   use exchange_in_turns, only: advance_exchange, begin_exchange, end_exchange, turns_t
   use external_loads, only: external_forces
@@ -19,7 +20,6 @@ module newton
   use heat_correction, only: follow_content, is_steep
   use iteration_history, only: caught, ceiling_of_residual, difficulty_of_patches, goes_to_and_fro, has_converged, in_circles, &
                                in_turmoil, is_near, iteration_t, judge, was_given_time, went_round
-  use jumped_bodies, only: has_jumped
   use kinds, only: wp
   use law_api, only: contact_slip, contact_stick
   use linear_solver, only: return_to_chosen
@@ -30,35 +30,26 @@ module newton
   use pseudo_transient, only: ease_shift, goes_past_limits, shift_t, solve_shifted, turn_downhill
   use resting_bodies, only: strengthen_drag
   use scene, only: scene_t
-  use soft_contact, only: begin_softly, end_softly, is_stage_done, stiffen
+  use soft_contact, only: is_stage_done, stiffen
   use soft_penalties, only: press_too_softly, raise_penalties
   use solution, only: solution_t
-  use stability, only: ways_to_leave
   use step_outcome, only: outcome_t, set_cause, set_solver_cause
-  use step_strategy, only: is_shortest
-  use text, only: to_text
   implicit none
   private
-  public :: solve_step
+  public :: find_equilibrium
 
   !> Conductances of contact follow its pressures and gaps once they change by no more than this, over their slack
   !> (exchange_in_turns), or after so many exchanges.
   real(wp), parameter :: near_change = 5.0e-3_wp
   integer, parameter :: most_exchanges = 12
-  !> The first motion is taken where no more corrections than this share of the most iterations went too far; a motion out of dies
-  !> where no more were made.
-  real(wp), parameter :: sure_way = 0.25_wp
   !> Points that slip to each that sticks, or more, where hardly anything holds a body in its contacts.
   integer, parameter :: few_stick = 4
 
 contains
 
-  !> Find the equilibrium of the present solve at the end of a step of length dt. With a load factor corrections are taken whole, as
-  !> those of a slender part must be; where that leads nowhere, so much of them that the residual stays below a ceiling. An
-  !> equilibrium that is not stable is left: the forces say to which side, by corrections that lead downhill alone. A perfect part
-  !> stays where it is, and in the shortest step nothing else may be found: the equilibrium that is not stable is taken then, and in
-  !> later steps until they are stable again. A step that fails leaves the committed state as it was.
-  subroutine solve_step(scene, equations, solution, dt, outcome, left, given, go_on)
+  !> One attempt at the equilibrium of the present solve at the end of a step of length dt, in the manner that `equations` state.
+  !> One that fails leaves the committed state as it was.
+  subroutine find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
     type(scene_t), intent(in) :: scene
     type(equations_t), intent(inout) :: equations
     type(solution_t), intent(inout) :: solution
@@ -67,49 +58,6 @@ contains
     real(wp), intent(in), optional :: left(:)    !! (ndof) part of the residual to be left, 0 where absent [residual]
     real(wp), intent(in), optional :: given(:)   !! (ndof) motion of other solves' unknowns; of all with go_on [unknown]
     logical, intent(in), optional :: go_on       !! from `given` for the own unknowns too
-    type(iteration_t), allocatable :: history(:)
-
-    call begin_softly(scene, dt, equations)
-    equations%takes_unstable = solution%stays_unstable
-    call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
-    if (scene%load_factor%multiplier > 0 .and. .not. (outcome%converged .or. outcome%event < 1 .or. allocated(outcome%error))) then
-      history = outcome%history
-      equations%below_ceiling = .true.
-      call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
-      equations%below_ceiling = .false.
-      outcome%history = [history, outcome%history]
-      outcome%iterations = size(outcome%history) - 1
-    end if
-    if (outcome%unstable > 0 .and. .not. equations%takes_unstable) then
-      history = outcome%history
-      equations%downhill = .true.
-      call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
-      equations%downhill = .false.
-      history = [history, outcome%history]
-      if (.not. allocated(outcome%error) .and. &
-          (outcome%converged .and. outcome%unstable > 0 .or. .not. outcome%converged .and. is_shortest(scene, dt))) then
-        equations%takes_unstable = .true.
-        call find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
-        history = [history, outcome%history]
-      end if
-      outcome%left_unstable = .not. equations%takes_unstable
-      outcome%history = history
-      outcome%iterations = size(history) - 1
-    end if
-    outcome%stays_unstable = equations%takes_unstable .and. outcome%unstable > 0
-    call end_softly(outcome%converged, outcome%history, equations)
-  end subroutine solve_step
-
-  !> The same, with the share of the penalties that new contact begins with.
-  subroutine find_equilibrium(scene, equations, solution, dt, outcome, left, given, go_on)
-    type(scene_t), intent(in) :: scene
-    type(equations_t), intent(inout) :: equations
-    type(solution_t), intent(inout) :: solution
-    real(wp), intent(in) :: dt
-    type(outcome_t), intent(out) :: outcome
-    real(wp), intent(in), optional :: left(:)    !! (ndof) as in solve_step [residual]
-    real(wp), intent(in), optional :: given(:)   !! (ndof) [unknown]
-    logical, intent(in), optional :: go_on
     !> Forces at the end of the step and what is left of them [residual]; prescribed motion that is still missing, and the last
     !> correction [unknown].
     real(wp), dimension(equations%dofs%ndof) :: external, residual, missing, correction
@@ -458,66 +406,23 @@ contains
 
     !> What the attempt has found: an equilibrium, unless the step is too long for it to be taken.
     subroutine conclude()
-      logical :: lost
+
       if (together) call end_exchange(equations, exchange)
       outcome%augmentations = made%times
       outcome%gave_way = made%gave_way
       outcome%strain = report%strain
       outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
-      if (equations%solves(equations%now)%own(displacement_field)) equations%without_patches = .not. outcome%converged &
-        .and. (equations%without_patches .or. any(outcome%history%inner > 0))
-      if (equations%solves(equations%now)%own(displacement_field)) call strengthen_drag(.not. outcome%converged, equations)
-      if (outcome%converged .and. report%passed < 1) then
-        outcome%converged = .false.
-        outcome%reason = 'a side goes through a die'
-        if (dt > scene%strategy%least_step) then
-          outcome%event = report%passed
-          outcome%event_reason = 'a die would go through a side'
-        end if
+      if (equations%solves(equations%now)%own(displacement_field)) then
+        equations%without_patches = .not. outcome%converged .and. (equations%without_patches .or. any(outcome%history%inner > 0))
+        call strengthen_drag(.not. outcome%converged, equations)
       end if
-      ! who leaves a part of the residual judges the strain of his parts
-      if (outcome%converged .and. outcome%strain > scene%strategy%strain_bound &
-          .and. .not. (present(left) .and. equations%mode == mode_advance)) then
-        outcome%converged = .false.
-        outcome%reason = 'strain increment '//to_text(outcome%strain, 3)//' above '//to_text(scene%strategy%strain_bound, 3)
-      end if
-      lost = outcome%converged
-      if (lost) lost = is_lost_way()
-      if (lost) then
-        outcome%converged = .false.
-        outcome%reason = to_text(outcome%iterations)//' iterations, '//trim(merge('in which a part jumped free of its dies', &
-                            'in the first step                      ', solution%last_step > 0))//': they may have lost their way'
-      end if
-      if (outcome%converged .and. outcome%iterations > 0) then
-        call ways_to_leave(scene, equations, solution, shift%value > 0, outcome%unstable, outcome%error)
-        if (outcome%unstable > 0 .and. .not. (equations%downhill .or. equations%takes_unstable)) &
-          outcome%reason = 'the equilibrium found is not stable'
-        outcome%converged = .not. (allocated(outcome%reason) .or. allocated(outcome%error))
-      end if
+      if (outcome%converged) &
+        call check_equilibrium(scene, equations, solution, dt, external, report, in_part=present(left), &
+                               past_limit=shift%value > 0, outcome=outcome)
       if (outcome%converged) return
       outcome%residual = residual
       call put_back(made, solution)
     end subroutine conclude
-
-    !> The first motion was found by many corrections that went too far: none before it says where the way leads, and of a slender
-    !> part past its load of buckling there are several equilibria, all stable; such corrections may end in any (those that find
-    !> contact are taken whole, or searched closely). A later one was found by many corrections at the end of which a part has
-    !> jumped out of its dies.
-    function is_lost_way() result(is)
-      logical :: is
-
-      is = equations%mode == mode_advance .and. equations%solves(equations%now)%own(displacement_field) .and. &
-           .not. (present(left) .or. equations%downhill .or. is_shortest(scene, dt))
-      if (.not. is) return
-      if (solution%last_step > 0) then
-        is = outcome%iterations > sure_way*scene%strategy%max_iterations
-        if (is) is = has_jumped(scene, equations, solution, dt, external)
-      else
-        associate (too_far => outcome%history%line_search < 1 .and. .not. outcome%history%closely)
-          is = count(too_far) > sure_way*scene%strategy%max_iterations
-        end associate
-      end if
-    end function is_lost_way
 
   end subroutine find_equilibrium
 
