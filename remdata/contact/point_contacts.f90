@@ -5,7 +5,7 @@
 !> the part's own there, the new mesh has a node at the place, and the force goes on to it (contact_carry).
 module point_contacts
   use boundary_sides, only: loop_t
-  use corner_weights, only: corner_weight, place_within
+  use corner_weights, only: corner_length, place_within
   use die_closest_points, only: point_on_side
   use die_corner_contact, only: find_corners
   use kinds, only: wp
@@ -114,7 +114,7 @@ contains
     real(wp), allocatable :: xi(:), weight(:)
     type(side_point_t) :: of_control
     real(wp) :: most, most_of_control
-    integer :: pressure, corner_pressure, corner_place, side, e, p
+    integer :: pressure, corner_pressure, corner_place, corner_share, side, e, p
 
     most = 0
     most_of_control = 0
@@ -127,6 +127,7 @@ contains
       if (corner_pressure == 0) corner_place = 0
       if (corner_place > 0) then
         corner_place = group%variables(corner_place)%first
+        corner_share = group%variables(find_variable(group%variables, 'corner_share'))%first
         corner_pressure = group%variables(corner_pressure)%first
       end if
       call line_rule(group%rule, xi, weight)
@@ -142,8 +143,8 @@ contains
           end if
           if (corner_place == 0) cycle
           if (group%pairs == 0 .and. .not. abs(state(corner_place, p, e)) < 1) cycle
-          call try(place_within(state(corner_place, p, e)), corner_weight(xi, p, state(corner_place, p, e), group%pairs > 0) &
-                   *state(corner_pressure, p, e), most, place)
+          call try(place_within(state(corner_place, p, e)), corner_length(xi, p, group%pairs > 0) &
+                   *state(corner_share, p, e)*state(corner_pressure, p, e), most, place)
         end do
       end do
     end associate

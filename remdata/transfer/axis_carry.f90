@@ -69,10 +69,10 @@ contains
     integer, intent(in) :: carried(:)     !! (n) numbers of components of a point
     real(wp), intent(in) :: before(:)     !! (component) [unit of each component]
     real(wp), intent(inout) :: after(:)   !! (component) [unit of each component]
-    integer :: taken(3)
+    integer :: taken(4)
 
     taken = [component_of(scene, g, 'corner_contact_status'), component_of(scene, g, 'corner_die_piece'), &
-             component_of(scene, g, 'corner_die_xi')]
+             component_of(scene, g, 'corner_die_xi'), component_of(scene, g, 'corner_share')]
     after(taken) = before(taken)
     associate (of_corner => carried + offset_of_corner(scene, g))
       after(of_corner) = before(of_corner)

@@ -2,7 +2,7 @@
 module old_interval_points
   use arcs, only: arc_t
   use boundary_sides, only: loop_t
-  use corner_weights, only: corner_weight, place_within, share_of_corner
+  use corner_weights, only: corner_length, place_within, share_at_node
   use interval_points, only: add_neighbour, add_point, interval_points_t, line_jacobian, status_row, surface
   use kinds, only: wp
   use loop_intervals, only: contact_interval_t, is_before_corner, side_point_t
@@ -91,7 +91,7 @@ contains
     real(wp) :: share
     integer :: n
 
-    share = 1 - share_of_corner(corner%xi, of_body=.false.)
+    share = 1 - share_at_node(corner%xi)
     if (.not. (share > 0 .and. towards*corner%xi > 0)) return
     n = size(row%s)
     call add_neighbour(scene, g, loop, x, corner%side, real(towards, wp), row)
@@ -106,7 +106,7 @@ contains
     real(wp), intent(in) :: nodes(2, 3), xi(:), state(:, :, :)
     type(arc_t), intent(in) :: part
     type(interval_points_t), intent(inout) :: row
-    real(wp) :: place, on_side, weight
+    real(wp) :: place, on_side, weight, share
 
     associate (variables => scene%groups(g)%variables, of_body => scene%groups(g)%pairs > 0)
       if (find_variable(variables, 'corner_place') == 0) return
@@ -117,11 +117,12 @@ contains
       if (.not. (of_body .or. abs(place) < 1)) return
       on_side = place_within(place)
       if (on_side < part%range(1) .or. on_side > part%range(2)) return
-      weight = corner_weight(xi, p, place, of_body)*line_jacobian(nodes, on_side, scene%plane_state == axisymmetric)
+      share = state(variables(find_variable(variables, 'corner_share'))%first, p, e)
+      weight = corner_length(xi, p, of_body)*share*line_jacobian(nodes, on_side, scene%plane_state == axisymmetric)
       call add_point(row%length + length_between(part, part%range(1), on_side), weight, p, e, row, &
                      variables(find_variable(variables, 'corner_pressure'))%first &
                      - variables(find_variable(variables, 'pressure'))%first)
-      if (share_of_corner(place, of_body) < 1) row%reach(size(row%reach)) = &
+      if (share < 1) row%reach(size(row%reach)) = &
         length_between(part, min(on_side, sign(1.0_wp, place)), max(on_side, sign(1.0_wp, place)))
     end associate
   end subroutine add_corner

@@ -8,7 +8,7 @@
 !> f is the force that acted: of a point beyond a corner of its die what is left of its pressure there (corner_release), that may be
 !> a thousandth of it.
 module gap_work
-  use axis_contact, only: area_at_corner, share_at_corner
+  use axis_contact, only: area_at_corner
   use closest_point, only: closest_point_t
   use contact_areas, only: area_of_point
   use contact_point, only: penalties
@@ -107,7 +107,7 @@ contains
                          area_at_corner(before(2*n + 1, p, e), corner_length(xi, p, group%pairs > 0), &
                                         solution%fields(section_field)%value(:, 1), x(:, :3, e), &
                                         side_length(scene, group%connectivity(:, e))), &
-                         share_at_corner(before(2*n + 1, p, e), group%pairs > 0))
+                         before(2*n + 2, p, e))
         end do
       end do
     end associate

@@ -20,7 +20,7 @@ module axis_contact
   use contact_penalties, only: allowed_penetration
   use contact_state, only: at_augmentation, at_penetration, at_piece, at_pressure, at_status, at_xi, contact_block, rest
   use corner_contact, only: end_on_axis, press_corner
-  use corner_weights, only: area_of_disc, share_of_corner
+  use corner_weights, only: area_of_disc
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
@@ -32,7 +32,7 @@ module axis_contact
   use side_points, only: area_at, contact_point_t, no_surface
   implicit none
   private
-  public :: press_axis, area_at_corner, depth_of_bearing, share_at_corner
+  public :: press_axis, area_at_corner, depth_of_bearing
 
   !> It acts on what is deeper than this share of the allowed penetration, and than the next point times this factor.
   real(wp), parameter :: own_share = 0.5_wp, deeper = 1.1_wp
@@ -74,7 +74,7 @@ contains
     corner_acts = nint(trial(n + at_status, p)) /= contact_open
     node_acts = met .and. nint(node(n + at_status)) /= contact_open
     if (corner_acts .and. node_acts) then
-      share = share_of_corner(trial(size(trial, 1), p), of_body=.false.)
+      share = trial(2*n + 2, p)
       if (share < 1) then
         node_acts = node(n + at_pressure) >= share*trial(n + at_pressure, p)
       else
@@ -113,11 +113,11 @@ contains
     type(contact_point_t) :: point, beside
     type(closest_point_t) :: closest, next
     real(wp), parameter :: ends(2) = [-1.0_wp, 1.0_wp]
-    real(wp) :: before(size(committed, 1)/2)
+    real(wp) :: before(contact_block(.true., size(committed, 1)))
     integer :: p, q, n, at_place
 
-    at_place = size(trial)
-    n = contact_block(.true., at_place)
+    n = contact_block(.true., size(trial))
+    at_place = 2*n + 1
     p = merge(1, size(xi), k == 1)
     q = p
     if (abs(xi(p)) >= 1) q = p + merge(1, -1, k == 1)
@@ -128,7 +128,8 @@ contains
       before = committed(n + 1:2*n, p)
       ! the state was that of a corner; one of an open corner has nothing to forget but the multiplier found in this step
       if (abs(committed(at_place, p)) < 1 .and. nint(before(at_status)) /= contact_open) call forget(before)
-      trial(at_place) = ends(k)
+      ! all of its pressure acts
+      trial(at_place:) = [ends(k), 1.0_wp]
       call place_point(side, xi(q), beside)
       call closest_or_followed(die, turned(beside%x - side%pilot(1:2, 2), -side%pilot(3, 2)), &
                                turned(beside%e_r, -side%pilot(3, 2)), side%length, committed(:n, q), next)
@@ -242,15 +243,5 @@ contains
     if (abs(place) < 1) return
     if (thickness_at(section, x(:, merge(1, 3, place < 0))) <= no_surface*chord) area = area_of_disc(chord)
   end function area_at_corner
-
-  !> Share of its pressure with which the state of a corner acts: all of it of a node on the axis, which is at an end of its side.
-  elemental function share_at_corner(place, of_body) result(share)
-    real(wp), intent(in) :: place     !! on the side [-]
-    logical, intent(in) :: of_body    !! the corner is an edge of another body
-    real(wp) :: share
-
-    share = 1
-    if (of_body .or. abs(place) < 1) share = share_of_corner(place, of_body)
-  end function share_at_corner
 
 end module axis_contact

@@ -3,7 +3,7 @@
 !> The state of a point is that of contact_point; behind it there may be the same of a corner of the
 !> die, and its position on the side (corner_contact).
 module contact_measure
-  use axis_contact, only: area_at_corner, share_at_corner
+  use axis_contact, only: area_at_corner
   use contact_areas, only: area_of_point
   use contact_penalties, only: allowed_penetration, penalties_of_card, penalties_t
   use contact_point, only: dissipated, penalties
@@ -89,7 +89,7 @@ contains
     real(wp), allocatable :: xi(:), weight(:)
     integer :: e
 
-    yes = is_held(state, k, n, group%pairs > 0)
+    yes = is_held(state, k, n)
     if (k > 0 .or. group%pairs == 0) return
     call line_rule(group%rule, xi, weight)
     do e = 1, size(yes, 2)
@@ -99,14 +99,13 @@ contains
 
   !> Points whose pressure can hold the side where it is, in the block of rows that follows row k: the points themselves, or the
   !> corners of the die.
-  pure function is_held(state, k, n, of_body) result(yes)
+  pure function is_held(state, k, n) result(yes)
     real(wp), intent(in) :: state(:, :, :)   !! (nstate, npoint, nside) [unit of each component]
     integer, intent(in) :: k, n
-    logical, intent(in) :: of_body           !! corners are edges of another body
     logical :: yes(size(state, 2), size(state, 3))
 
     yes = .not. is_released(state(k + at_xi, :, :))
-    if (k > 0) yes = yes .and. share_at_corner(state(k + n + 1, :, :), of_body) > least_share
+    if (k > 0) yes = yes .and. state(k + n + 2, :, :) > least_share
   end function is_held
 
   !> Depth of points, and height of those that their multipliers hold over the die.
@@ -190,7 +189,7 @@ contains
         call add_point(state(n + 1:2*n, p, e), before(n + 1:2*n, q, e), begun, &
                        area_at_corner(state(2*n + 1, p, e), corner_length(xi, p, group%pairs > 0), section, x(:, :, e), side), &
                        .false., &
-                       share_at_corner([before(2*n + 1, q, e), state(2*n + 1, p, e)], group%pairs > 0))
+                       [before(2*n + 2, q, e), state(2*n + 2, p, e)])
       end do
     end do
 

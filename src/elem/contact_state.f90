@@ -46,13 +46,14 @@ contains
            at_energy], :) = 0
   end subroutine rest
 
-  !> Rows of the state that are of the point itself: with corners the same of a corner and its position on the side follow.
+  !> Rows of the state that are of the point itself: with corners the same of a corner follow, its position on the side, and its
+  !> share there.
   pure function contact_block(corners, nstate) result(n)
     logical, intent(in) :: corners   !! corners of the die are points of contact of their own
     integer, intent(in) :: nstate    !! rows of the state
     integer :: n
 
-    n = merge((nstate - 1)/2, nstate, corners)
+    n = merge((nstate - 2)/2, nstate, corners)
   end function contact_block
 
   !> A point is in contact, or the corner of the die beside it, or its side next to it (contact_between).

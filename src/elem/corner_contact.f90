@@ -21,16 +21,17 @@ module corner_contact
   use contact_state, only: at_between, at_energy, at_penetration, at_piece, at_pressure, at_status, at_tau, at_work, at_xi, &
                            contact_block
   use corner_states, only: bears, corner_at_start, free_depth, keep_corner
-  use corner_weights, only: handing_over, interval_before, share_of_corner
+  use corner_weights, only: handing_over, interval_before
   use dies, only: die_t
   use elem_api, only: report_t
   use kinds, only: wp
   use law_api, only: contact_open, law_t
   use materials, only: material_t
+  use passing_corners, only: corner_at_side, deepest_at_side, share_of, slope_of_share
   use plane_vectors, only: turned
   use rigid_contact, only: drift_t, ndof, nodes_in_axes, outer, place_point, press, side_t
   use shape_functions, only: line3
-  use side_corners, only: closest_at_corner, corner_t, corner_within, deepest_corner
+  use side_corners, only: closest_at_corner, corner_t
   use side_points, only: area_at, contact_point_t, most_unknowns, no_surface, thinning
   implicit none
   private
@@ -100,13 +101,13 @@ contains
     if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
     call interval_before(xi, p, from, to)
     if (.not. to > from) return
-    at_place = size(trial)
-    n = contact_block(.true., at_place)
+    n = contact_block(.true., size(trial))
+    at_place = 2*n + 1
     nodes = nodes_in_axes(side)
-    call deepest_corner(die, nodes, from, to, side%length, corner)
+    call deepest_at_side(die, side, nodes, from, to, corner)
     if (.not. corner%found) return
     call keep_corner(die, material, side, nodes, from, to, committed(n + 1:2*n, p), corner)
-    trial(at_place) = corner%place
+    trial(at_place:) = [shown_place(corner), share_of(corner)]
     before = corner_at_start(die, material, side, committed, p, corner, first=.true.)
     associate (now => trial(n + 1:2*n))
       worn = thinning(committed(at_place:at_place, p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
@@ -114,12 +115,12 @@ contains
       done = now(at_work)
       call corner_at(law, material, drivers, axisym, side, corner, to - from, before, now, force, stiffness)
       ! friction acts with the share of the corner
-      now(at_work) = done + share_of_corner(corner%place, of_body=.false.)*(now(at_work) - done)
+      now(at_work) = done + share_of(corner)*(now(at_work) - done)
       call report_corner(side, before, now, report)
     end associate
     do k = 1, size(die%corners, 2)
       if (k == corner%number) cycle
-      call corner_within(die, k, nodes, from, to, side%length, 0.0_wp, other)
+      call corner_at_side(die, k, side, nodes, from, to, other)
       if (.not. other%found) cycle
       before = corner_at_start(die, material, side, committed, p, other, first=.false.)
       before(at_work) = 0
@@ -165,7 +166,7 @@ contains
     y(2, :) = side%x(2, :) + side%du(4:6)
     part = area_at(place, side%section, y)
     if (.not. part > 0) return
-    part = share_of_corner(corner%place, of_body=.false.)*area_at(corner%place, side%section, y)/part
+    part = share_of(corner)*area_at(corner%place, side%section, y)/part
     taken = now(at_work) + 0.5_wp*now(at_tau)**2/side%penalty(2)
     kept([at_pressure, at_between]) = kept([at_pressure, at_between]) + part*now(at_pressure)
     kept(at_energy) = kept(at_energy) + part*0.5_wp*now(at_pressure)*(now(at_penetration) - free_depth(material, side))
@@ -190,6 +191,16 @@ contains
     end do
   end function corner_beside
 
+  !> Place in the state of a corner: one that passes a node is within its side; at an end of it is the state of a node on the axis
+  !> alone (axis_contact).
+  elemental function shown_place(corner) result(place)
+    type(corner_t), intent(in) :: corner
+    real(wp) :: place
+    real(wp), parameter :: last = 1 - epsilon(1.0_wp)
+
+    place = max(-last, min(last, corner%place))
+  end function shown_place
+
   !> Contact at one corner: state, forces, matrix.
   pure subroutine corner_at(law, material, drivers, axisym, side, corner, weight, committed, trial, force, stiffness)
     type(law_t), intent(in) :: law
@@ -202,11 +213,11 @@ contains
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
     type(drift_t) :: drift
-    real(wp) :: share, before(ndof), toward_end
+    real(wp) :: share, before(ndof)
 
     call place_point(side, corner%place, point)
     if (axisym .and. point%x(1) <= no_surface*side%length) return
-    share = share_of_corner(corner%place, of_body=.false.)
+    share = share_of(corner)
     if (.not. bears(material, side, corner, committed)) then
       ! its gap is known; at the very end of the side the next one has it
       trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
@@ -217,9 +228,8 @@ contains
     call press(law, material, drivers, side, corner%place, point, closest_at_corner(corner), &
                free_depth(material, side), weight*share, committed, trial, force, stiffness, drift)
     if (.not. (side%tangent .and. share < 1)) return
-    ! the share changes with the position: d(ln share) = -sign(place)/(1 - |place|) d(place)
-    toward_end = sign(1.0_wp, corner%place)/(1 - abs(corner%place))
-    stiffness = stiffness - toward_end*spread(force - before, 2, ndof)*spread(drift%dxi, 1, ndof)
+    ! the share changes with the position
+    stiffness = stiffness + slope_of_share(corner)/share*spread(force - before, 2, ndof)*spread(drift%dxi, 1, ndof)
   end subroutine corner_at
 
   !> The position of a corner on the side moves with nodes and pilot, and the point with it: from (V - y).y' = 0,

@@ -6,13 +6,13 @@ module corner_states
   use contact_penalties, only: allowed_penetration
   use contact_state, only: at_augmentation, at_between, at_energy, at_penetration, at_piece, at_pressure, at_status, at_tau, &
                            at_xi, contact_block
-  use corner_weights, only: share_of_corner
   use dies, only: die_t
   use kinds, only: wp
   use law_api, only: contact_open, contact_slip
   use materials, only: material_t
+  use passing_corners, only: corner_at_side, share_of
   use rigid_contact, only: is_kept, nodes_in_axes, side_at_start, side_t
-  use side_corners, only: corner_t, corner_within
+  use side_corners, only: corner_t
   implicit none
   private
   public :: bears, corner_at_start, corner_before, corner_share, free_depth, keep_corner
@@ -37,7 +37,7 @@ contains
     if (nint(committed(at_status)) == contact_open .or. is_of(committed, corner)) return
     do k = 1, size(die%corners, 2)
       if (die%corner_piece(k) /= nint(committed(at_piece)) .or. die%corner_xi(k)*committed(at_xi) < 0) cycle
-      call corner_within(die, k, nodes, from, to, side%length, 0.0_wp, same)
+      call corner_at_side(die, k, side, nodes, from, to, same)
       if (.not. same%found) cycle
       if (bears(material, side, same, committed)) corner = same
     end do
@@ -83,7 +83,7 @@ contains
     known = nint(state(at_piece)) /= 0
     state([at_pressure, at_tau, at_penetration, at_status, at_piece, at_xi, at_between, at_energy]) = 0
     if (.not. first) state(at_augmentation) = 0
-    call corner_within(die, corner%number, nodes_in_axes(side_at_start(side)), -1.0_wp, 1.0_wp, side%length, 0.0_wp, start)
+    call corner_at_side(die, corner%number, side, nodes_in_axes(side_at_start(side)), -1.0_wp, 1.0_wp, start)
     if (.not. start%found) return
     state(at_penetration) = start%d
     if (.not. known) return
@@ -134,7 +134,7 @@ contains
     depth = corner%d
     if (is_kept(side, committed)) depth = committed(at_penetration)
     yes = committed(at_augmentation) + side%penalty(1)*(depth - free_depth(material, side)) > 0 &
-          .and. share_of_corner(corner%place, of_body=.false.) > 0
+          .and. share_of(corner) > 0
   end function bears
 
   !> Depth of a corner without pressure.

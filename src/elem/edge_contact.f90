@@ -17,7 +17,7 @@ module edge_contact
   use contact_point, only: act, meeting_t
   use contact_state, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_block
   use corner_states, only: corner_share
-  use corner_weights, only: corner_length, handing_over, interval_before, share_of_corner
+  use corner_weights, only: corner_length, handing_over, interval_before, share_past_node
   use dies, only: die_t
   use edge_states, only: edge_at_start
   use elem_api, only: report_t
@@ -79,8 +79,8 @@ contains
     if (size(die%corners, 2) == 0 .or. .not. allowed_penetration(material) > 0) return
     nodes = side%x + reshape(side%du([1, 4, 2, 5, 3, 6]), [2, 3])
     if (.not. is_near(die, nodes, side%length)) return
-    at_place = size(trial, 1)
     n = size(before)
+    at_place = 2*n + 1
     do p = 1, size(xi)
       call interval_before(xi, p, from, to)
       if (.not. to > from) cycle
@@ -91,7 +91,7 @@ contains
       if (piece%node == 0) cycle
       before = edge_at_start(committed, p, corner%piece)
       if (nint(before(at_status)) == contact_open .and. depth_at_start(side, corner%place, piece) > deepest_start*side%length) cycle
-      trial(at_place, p) = corner%place
+      trial(at_place:, p) = [corner%place, share_past_node(corner%place)]
       associate (now => trial(n + 1:2*n, p))
         worn = thinning(committed(at_place:at_place, p), [corner%place], side%section, side%thickening, side%x, side%du(1:6))
         now(at_work) = before(at_work)*worn(1)
@@ -99,7 +99,7 @@ contains
         call edge_at(law, material, drivers(:, :, p), axisym, side, corner, piece, corner_length(xi, p, .true.), place, before, &
                      now, force, stiffness)
         ! friction acts with the share of the edge
-        now(at_work) = done + share_of_corner(corner%place, of_body=.true.)*(now(at_work) - done)
+        now(at_work) = done + share_past_node(corner%place)*(now(at_work) - done)
         if (nint(before(at_status)) /= contact_open) then
           report%jump = max(report%jump, abs(now(at_penetration) - before(at_penetration))/side%length)
         end if
@@ -185,7 +185,7 @@ contains
     trial([at_penetration, at_piece, at_xi]) = [corner%d, real(corner%piece, wp), corner%xi]
     if (axisym .and. point%x(1) <= no_surface*side%length) return
     allowed = corner_share*allowed_penetration(material)*side%length
-    share = share_of_corner(corner%place, of_body=.true.)
+    share = share_past_node(corner%place)
     ! its gap is known; where it is far enough beyond an end the next side has it
     if (.not. (committed(at_augmentation) + side%penalty(1)*(corner%d - allowed) > 0 .and. share > 0)) return
     call follow_edge(side, corner, piece, dphi, point, meeting, dxi)

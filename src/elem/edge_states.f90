@@ -2,7 +2,7 @@
 !> the edge is, and goes on from there to the next as the side slides.
 module edge_states
   use contact_state, only: at_augmentation, at_between, at_piece, at_pressure, at_status, at_xi, contact_block
-  use corner_weights, only: handing_over, share_of_corner
+  use corner_weights, only: handing_over
   use kinds, only: wp
   use law_api, only: contact_open
   implicit none
@@ -113,7 +113,7 @@ contains
     do p = 2, size(xi)
       if (nint(state(n + at_piece, p)) == 0) cycle
       associate (place => state(2*n + 1, p))
-        if (share_of_corner(place, of_body=.true.) < 1) cycle
+        if (state(2*n + 2, p) < 1) cycle
         yes = yes .or. abs(xi - place) < max(handing_over, xi(p) - xi(p - 1))
       end associate
     end do

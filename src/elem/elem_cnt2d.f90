@@ -26,8 +26,9 @@ module elem_cnt2d
   use contact_overlap, only: share_to_contact
   use contact_point, only: penalties
   use contact_scan, only: is_near
-  use contact_state, only: at_penetration, at_piece, at_status, at_work, at_xi, contact_block, point_variables, rest, show_on_axis
-  use corner_contact, only: corner_beside, press_corners
+  use contact_state, only: at_augmentation, at_penetration, at_piece, at_status, at_work, at_xi, contact_block, &
+                           point_variables, rest, show_on_axis
+  use corner_contact, only: corner_beside, end_on_axis, press_corners
   use corner_release, only: motion_past_corner, passes_corner, release_t, slide_past_corner
   use die_sweep, only: share_to_pass
   use dies, only: die_t
@@ -36,6 +37,7 @@ module elem_cnt2d
   use kinematics_api, only: kinematics_t
   use law_api, only: contact_law, contact_open, law_t
   use materials, only: material_t
+  use passing_corners, only: taken_by_corners
   use plane_vectors, only: turned
   use quadrature, only: line_rule, rule_along, rule_control
   use side_contact, only: press_side
@@ -69,7 +71,7 @@ contains
     row%augment => augment
   end function elem_cnt2d_row
 
-  !> That of a point with its law's, the same of the corner before it, and the corner's position on the side.
+  !> That of a point with its law's, the same of the corner before it, the corner's position on the side, and its share there.
   pure subroutine variables(law, plane_state, list)
     type(law_t), intent(in) :: law
     integer, intent(in) :: plane_state
@@ -79,7 +81,8 @@ contains
 
     allocate (own, source=point_variables(law))
     n = size(own)
-    allocate (list, source=[own, own, state_variable('corner_place', '-', transfer_recompute)])
+    allocate (list, source=[own, own, state_variable('corner_place', '-', transfer_recompute), &
+                            state_variable('corner_share', '-', transfer_recompute)])
     do k = 1, n
       list(n + k)%name = 'corner_'//own(k)%name
       list(n + k)%transfer = transfer_recompute
@@ -131,7 +134,7 @@ contains
         else
           do p = 1, size(xi)
             call contact_at(die, law, material, drivers(:, :, p, e), axisym, side, xi(p), weight(p), &
-                            corner_beside(xi, p, committed(:, :, e)), committed(:own, p, e), trial(:own, p, e), f, k)
+                            bearing_of(die, side, xi, p, committed(:, :, e)), committed(:own, p, e), trial(:own, p, e), f, k)
           end do
         end if
         do p = 1, size(xi)
@@ -178,6 +181,7 @@ contains
     side%penalty = penalties(scene%materials(group%material), group, side%length, instant%lasting_share)
     side%pilot(:, 1) = instant%pilots(:, group%die)
     side%pilot(:, 2) = side%pilot(:, 1) + du(7:9)
+    if (scene%plane_state == axisymmetric) side%axis_end = end_on_axis(side)
     side%dt = instant%dt
     side%tangent = instant%tangent
     side%kept = instant%kept .and. goes_on(instant, group%die)
@@ -210,6 +214,21 @@ contains
     end associate
   end subroutine begin_states
 
+  !> Share of its area on which a point bears: none of one within a side that was open beside a corner of the die in contact, and
+  !> less of a node the more of its pressure a corner has taken.
+  pure function bearing_of(die, side, xi, p, committed) result(bearing)
+    type(die_t), intent(in) :: die
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: xi(:)             !! (npoint) [-]
+    integer, intent(in) :: p
+    real(wp), intent(in) :: committed(:, :)   !! (nstate, npoint) [unit of each component]
+    real(wp) :: bearing
+
+    bearing = 1 - taken_by_corners(die, side, xi, p)
+    if (nint(committed(at_status, p)) /= contact_open) return
+    if (corner_beside(xi, p, committed)) bearing = 0
+  end function bearing_of
+
   !> Side and die are further apart than the search would reach: the side is skipped.
   pure function far(die, side) result(skipped)
     type(die_t), intent(in) :: die
@@ -220,7 +239,7 @@ contains
   end function far
 
   !> Contact at one integration point: state, forces, matrix.
-  pure subroutine contact_at(die, law, material, drivers, axisym, side, xi, weight, beside, committed, trial, force, &
+  pure subroutine contact_at(die, law, material, drivers, axisym, side, xi, weight, bearing, committed, trial, force, &
                              stiffness)
     type(die_t), intent(in) :: die
     type(law_t), intent(in) :: law
@@ -229,7 +248,7 @@ contains
     logical, intent(in) :: axisym
     type(side_t), intent(in) :: side
     real(wp), intent(in) :: xi, weight
-    logical, intent(in) :: beside   !! a corner of the die that passes
+    real(wp), intent(in) :: bearing   !! share of the area that bears, less where a corner of the die passes [-]
     real(wp), intent(in) :: committed(:)
     real(wp), intent(inout) :: trial(:), force(ndof), stiffness(ndof, ndof)
     type(contact_point_t) :: point
@@ -247,18 +266,19 @@ contains
     if (closest%piece == 0) return
     ! a point on the axis has no surface: nothing acts there, and no contact is evaluated
     if (axisym .and. point%x(1) <= no_surface*side%length) return
-    if (beside .and. nint(committed(at_status)) == contact_open) then
+    if (.not. bearing > 0) then
       trial([at_penetration, at_piece, at_xi]) = [closest%d, real(closest%piece, wp), closest%xi]
       return
     end if
     if (abs(closest%d) <= touching*side%length) closest%d = 0
     start = committed
     if (closest%d > 0) start = state_at_start(die, side, xi, committed)
+    start(at_augmentation) = bearing*start(at_augmentation)
     before = force
     passed = .false.
     if (side%kept) passed = passes_corner(die, committed, closest)
     call press(law, material, drivers, side, xi, point, closest, 0.0_wp, weight*release%share, start, trial, force, stiffness, &
-               released=passed)
+               released=passed, bearing=bearing)
     if (.not. (side%tangent .and. release%share < 1)) return
     stiffness = stiffness + release%slope/release%share*spread(force - before, 2, ndof) &
                 *spread(motion_past_corner(side, point, release), 1, ndof)

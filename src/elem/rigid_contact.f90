@@ -39,6 +39,8 @@ module rigid_contact
     real(wp) :: length = 0.0_wp
     !> Normal and tangential penalty [stress/length].
     real(wp) :: penalty(2) = 0.0_wp
+    !> End that is a node on the axis, 1 or 2; 0 for none.
+    integer :: axis_end = 0
     !> Length of the step [time].
     real(wp) :: dt = 0.0_wp
     !> Matrices are wanted; contact is kept (instant_t).

@@ -32,6 +32,8 @@ module side_corners
     integer :: face = 0
     !> Depth [length].
     real(wp) :: d = 0.0_wp
+    !> How far it passes the node at an end of the side, 0 to 1 (passing_corners).
+    real(wp) :: passing = 0.0_wp
   end type corner_t
 
   !> Beyond this sine outside the fan the side faces away from the corner.

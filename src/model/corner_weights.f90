@@ -7,7 +7,8 @@
 !>
 !> An edge of another body goes over to the next side: on its way past the node it acts on both, on each as if that went on beyond
 !> its end, with shares whose sum is one. Where the body is bent round the edge, with one side along either face, each side needs
-!> the force of its own face; the points of the node, on one of them, cannot give both.
+!> the force of its own face; the points of the node, on one of them, cannot give both. A corner of a rigid die does the
+!> same where both of its faces turn away from the side (passing_corners).
 !>
 !> A node on the axis, which has the state of a corner at exactly -1 or 1 (axis_contact), stands for the disc that reaches to the
 !> middle of its side.
@@ -15,7 +16,7 @@ module corner_weights
   use kinds, only: wp
   implicit none
   private
-  public :: area_of_disc, corner_length, corner_weight, handing_over, interval_before, place_within, share_of_corner
+  public :: area_of_disc, corner_length, handing_over, interval_before, place_within, share_at_node, share_past_node
 
   !> A corner nearer than this to an end of the side, in xi, has lost a part of its weight to the node there; an edge of a body one
   !> that is nearer to it or as far beyond it to the next side.
@@ -25,18 +26,21 @@ module corner_weights
 
 contains
 
-  !> Share of its weight that a corner at a position on the side has.
-  elemental function share_of_corner(place, of_body) result(share)
-    real(wp), intent(in) :: place      !! [-]
-    logical, intent(in) :: of_body     !! the corner is an edge of another body
+  !> Share of its weight that a corner at a position on the side has, whose load the node takes over.
+  elemental function share_at_node(place) result(share)
+    real(wp), intent(in) :: place   !! [-]
     real(wp) :: share
 
-    if (of_body) then
-      share = min(1.0_wp, max(0.0_wp, (1 + handing_over - abs(place))/(2*handing_over)))
-    else
-      share = min(1.0_wp, (1 - abs(place))/handing_over)
-    end if
-  end function share_of_corner
+    share = max(0.0_wp, min(1.0_wp, (1 - abs(place))/handing_over))
+  end function share_at_node
+
+  !> The same of one that passes the node, from this side to the next.
+  elemental function share_past_node(place) result(share)
+    real(wp), intent(in) :: place   !! [-]
+    real(wp) :: share
+
+    share = max(0.0_wp, min(1.0_wp, (1 + handing_over - abs(place))/(2*handing_over)))
+  end function share_past_node
 
   !> Where an edge is on the side itself: that of one beyond an end is the end.
   elemental function place_within(place) result(within)
@@ -53,17 +57,6 @@ contains
 
     area = 0.125_wp*chord**2
   end function area_of_disc
-
-  !> Weight of a corner at a position on the side, in the interval before a point.
-  pure function corner_weight(xi, p, place, of_body) result(weight)
-    real(wp), intent(in) :: xi(:)      !! (npoint) of the side [-]
-    integer, intent(in) :: p
-    real(wp), intent(in) :: place      !! [-]
-    logical, intent(in) :: of_body     !! the corner is an edge of another body
-    real(wp) :: weight
-
-    weight = corner_length(xi, p, of_body)*share_of_corner(place, of_body)
-  end function corner_weight
 
   !> Length in xi of a corner in the interval before a point.
   pure function corner_length(xi, p, of_body) result(length)

@@ -16,6 +16,11 @@ the second was 5 and 6 times as deep as allowed where an edge gave its load to t
 
 A plug whose cone ends in an edge of 18 degrees, pressed into a soft ring: `imbalance` of the energy, and `depth`, of the whole run. As long as
 an edge was one from 30 degrees on, single points of the ring bore 15 GPa one after the other as they slid past it, and lost it.
+
+Edges of rigid dies both of whose faces turn away from the side, as a knife and the sharp edge of a die that a strip is drawn over: they pass
+the nodes of the side. `force`: largest of a knife at a node beside that of one at a twentieth of a side from it, `imbalance` of the energy.
+As long as the node took the load of the edge over, with no face to press it, the edge fell into each node: the knife's steps were damped from
+the 16th on (`before`: of the damped run), the strip ended with 3 at .23 of its way.
 """
 import json
 import os
@@ -27,6 +32,9 @@ from patch_support import Checks, Run  # noqa: E402
 
 BOUND = {"force": 0.02, "depth": 2.0, "balance": 1.0e-6, "imbalance": 0.01}
 # 3.2 before at points, whose augmentations went to and fro, and 3.7 in half the steps; now between points, and 1 at them.
+KNIFE_BOUND = 0.004
+# A strip that springs from side to side of its elements as the edge passes.
+DRAWN_IMBALANCE = 0.02
 DEEPER = {"bulge 10.5 plane": 3.15}
 HEAD = """TITLE an edge of a deformable die
 STATE {state}
@@ -156,6 +164,58 @@ STOP 1.
 END
 """
 CONE_BEFORE = {"imbalance": 0.057, "depth": 2.1}
+KNIFE = """TITLE a strip bent over a knife
+STATE PLSTN
+KINEM LOG
+BLOCK s PL8LS 4 m
+   0. 0. 30. 0. 30. 2. 0. 2.
+   60 1. 4 1.
+LAW m EPLA
+   200000. 0.3
+   SWIFT 500. 0.004 0.15
+LAW f COUL2D
+   PENETR 1.E-3 PHI 0.1
+FIXED s 4 X
+DIE sup
+   SEGM {at}-4. -4. {at} 0.
+   SEGM {at} 0. {at}+4. -4.
+CNT2D s 1 sup f
+DIE nose PILOT 0. 2.
+   ARC 1.5 5.-3.*sqrt(3)/2 0. 2. -1.5 5.-3.*sqrt(3)/2 1.E-4
+CNT2D s 3 nose f
+LIC g
+   0. 0. 1. -5.
+MOVE nose Y g
+STRAT 0.005 1.E-7 0.005 6 3
+END
+"""
+DRAWN = """TITLE a strip drawn over a sharp edge
+STATE PLSTN
+KINEM LOG
+BLOCK s PL8LS 4 m
+   0. 0. 30. 0. 30. 1. 0. 1.
+   60 1. 3 1.
+LAW m EPLA
+   70000. 0.33
+   SWIFT 400. 0.01 0.2
+LAW f COUL2D
+   PENETR 1.E-3 PHI 0.2
+DIE die PILOT 12.2 0.
+   SEGM 12.2 -30. 12.2 0.
+   SEGM 12.2 0. 60. 0.
+DIE punch PILOT 0. 1.
+   SEGM 10.2 20. 10.2 3.
+   ARC 10.2 3. 8.2+2.*cos(pi/4) 3.-2.*sin(pi/4) 8.2 1. 1.E-3
+   SEGM 8.2 1. -1. 1.
+CNT2D s 1 die f
+CNT2D s 3 punch f
+FIXED s 4 X
+LIC t
+   0. 0. 1. -8.
+MOVE punch Y t
+STRAT 0.002 1.E-6 0.01 5 3
+END
+"""
 
 
 def depth_of(checks, name):
@@ -216,7 +276,31 @@ def main():
         for what, before in CONE_BEFORE.items():
             print(f"{'cone':24s} {what:8s} {before:9.2g} {found[what]:9.2g} {BOUND[what]:9.2g} {1 - found[what]/BOUND[what]:7.2f}", flush=True)
             checks.small(found[what], BOUND[what], f"cone: {what}")
+    rigid_edges(checks)
     checks.end()
+
+
+def rigid_edges(checks):
+    """Knife and drawn strip."""
+    runs = [Run(checks, f"knife-{k}", KNIFE.format(at=at)) for k, at in enumerate(("24.", "24.025"))]
+    if all(run.ok for run in runs):
+        checks.that(not any("damped" in run.said for run in runs), "knife: no step is damped", [run.said for run in runs])
+        most = [-run.history["force_y_sup"].min() for run in runs]
+        rows = [("force", 0.019, abs(most[0]/most[1] - 1)), ("imbalance", 0.0046, imbalance(runs[0]))]
+        for what, old, now in rows:
+            print(f"{'knife':24s} {what:9s} {old:8.2g} {now:9.2g} {KNIFE_BOUND:9.2g} {1 - now/KNIFE_BOUND:7.2f}", flush=True)
+            checks.small(now, KNIFE_BOUND, f"knife: {what}")
+    run = Run(checks, "drawn", DRAWN)
+    if run.ok:
+        now = imbalance(run)
+        print(f"{'drawn':24s} {'imbalance':9s} {'3':>8s} {now:9.2g} {DRAWN_IMBALANCE:9.2g} {1 - now/DRAWN_IMBALANCE:7.2f}", flush=True)
+        checks.small(now, DRAWN_IMBALANCE, "drawn: imbalance")
+
+
+def imbalance(run):
+    """Energy that is missing, of a whole run."""
+    with open(os.path.join(run.out, "summary.json"), encoding="utf-8") as file:
+        return abs(json.load(file)["checks"]["energy_imbalance"])
 
 
 if __name__ == "__main__":
