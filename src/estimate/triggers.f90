@@ -27,7 +27,7 @@ module triggers
   use web_thickness, only: measure_web, web_t
   implicit none
   private
-  public :: find_triggers, find_trims, distress_trigger, was_good, has_passed
+  public :: find_triggers, find_trims, find_wear, distress_trigger, was_good, has_passed
 
   !> The error and bad elements of a new mesh grow to this multiple before another one is due.
   real(wp), parameter :: worse = 1.5_wp
