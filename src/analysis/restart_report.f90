@@ -82,6 +82,7 @@ contains
     call json%add('parts', balance%parts)
     call json%add('motion_over_size', balance%motion)
     call add_forces(json, scene, balance)
+    call json%add('initial_volume', circumference(scene)*solution%initial_volume)
     call json%add('volume_before', circumference(scene)*balance%before%volume)
     call json%add('volume_after', circumference(scene)*balance%after%volume)
     call json%add('elastic_energy_before', circumference(scene)*balance%before%elastic_energy)

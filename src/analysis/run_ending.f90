@@ -39,6 +39,7 @@ module run_ending
   use text, only: add_text, string_t, to_text
   use thinned_sheets, only: warn_of_thinned_sheets
   use unsettled_contact, only: warn_of_unsettled_contact
+  use worn_mesh, only: warn_of_worn_mesh
   implicit none
   private
   public :: end_run, suspend_run
@@ -176,6 +177,7 @@ contains
     call warn_of_coarse_heat(scene, solution, warnings)
     call warn_of_folds(scene, warnings)
     call warn_of_thinned_sheets(scene, solution, warnings)
+    call warn_of_worn_mesh(scene, solution, warnings)
     call warn_of_missing_austenite(scene, solution, warnings)
     call warn_of_held_steels(scene, solution, warnings)
     call warn_of_absolute_cold(scene, solution, warnings)

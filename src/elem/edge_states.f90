@@ -83,8 +83,8 @@ contains
     if (.not. there(p)) q = findloc(there, .true., 1)
   end function interval_with
 
-  !> The interval in which the edge that is in contact in the interval before a point was when the step began; that interval
-  !> itself where it was in none, and 0 where it has left this one for another.
+  !> The interval from which the edge that is in contact in the interval before a point goes on, as edge_at_start has it; that
+  !> interval itself where it was in none, and 0 where it has left this one for another.
   pure function interval_at_start(before, now, p) result(q)
     real(wp), intent(in) :: before(:, :), now(:, :)   !! (nstate, npoint) [unit of each component]
     integer, intent(in) :: p
@@ -94,7 +94,7 @@ contains
     n = contact_block(.true., size(now, 1))
     q = p
     if (nint(now(n + at_status, p)) /= contact_open) then
-      q = interval_with(before, p, nint(now(n + at_piece, p)))
+      q = interval_of_start(before, p, nint(now(n + at_piece, p)))
       if (q == 0) q = p
     else if (nint(before(n + at_status, p)) /= contact_open) then
       if (interval_with(now, p, nint(before(n + at_piece, p))) > 0) q = 0

@@ -28,6 +28,9 @@ module estimator
   real(wp), parameter :: at_rest = 1.0e-9_wp
   !> A new mesh shows an error of its own when less than this share is left of those of the stress that was carried to it.
   real(wp), parameter :: forgotten = 0.1_wp
+  !> An error that falls to this share of what the mesh has shown first is what another one would begin with: contact that began at
+  !> a point has grown.
+  real(wp), parameter :: fallen = 2.0_wp/3.0_wp
 
 contains
 
@@ -54,6 +57,7 @@ contains
       estimate%stress_left = left_of_stress(energy, elastic, estimate%strain_sums(2, :))
       if (estimate%first_stress > 0 .and. left > forgotten .and. solution%step - estimate%began <= scene%remesh%least_steps) &
         estimate%first_stress = estimate%stress
+      if (estimate%stress > 0 .and. estimate%stress < fallen*estimate%first_stress) estimate%first_stress = estimate%stress
     end associate
   end subroutine estimate_errors
 

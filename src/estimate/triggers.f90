@@ -2,8 +2,9 @@
 !>
 !> Errors, shapes, contacts and distress wait until the mesh has made its least number of steps; times and strokes do not, nor an
 !> element of a new mesh that is turned over in its first steps: it takes its neighbours along, until the contour laps. What another
-!> mesh would gain is known from the present one: it would begin with the error that this one has shown first. It is due when the
-!> error is above the limit and worse by half than that; so are bad elements where a new mesh has them beyond the limit.
+!> mesh would gain is known from the present one: it would begin with the error that this one has shown first, or has fallen to
+!> since. It is due when the error is above the limit and worse by half than that; so are bad elements where a new mesh has them
+!> beyond the limit.
 !>
 !> Where what is left of the scene takes two more steps at most the mesh that is there makes them: a new one would hardly be
 !> used, and the equilibrium it begins with would be found in steps that have no others behind them. Elements that are turned
@@ -27,7 +28,7 @@ module triggers
   use web_thickness, only: measure_web, web_t
   implicit none
   private
-  public :: find_triggers, find_trims, distress_trigger, was_good, has_passed
+  public :: find_triggers, find_trims, find_wear, distress_trigger, was_good, has_passed
 
   !> The error and bad elements of a new mesh grow to this multiple before another one is due.
   real(wp), parameter :: worse = 1.5_wp

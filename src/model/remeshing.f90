@@ -78,7 +78,7 @@ module remeshing
     !> Share of the load that the nodes in contact on that mesh have left open (bearing_nodes).
     real(wp) :: previous_open = 0.0_wp
     !> Error of the stress that a new mesh has shown first: when it began, then when its flow has forgotten the stresses carried to
-    !> it, which the transfer has smoothed; 0 for the deck's own mesh.
+    !> it, which the transfer has smoothed; what that has fallen to, where much; 0 for the deck's own mesh.
     real(wp) :: first_stress = 0.0_wp
     !> Sides of a narrow contact over those that were wanted, with which a new mesh began or the old one went on; 0 without.
     real(wp) :: first_narrow = 0.0_wp

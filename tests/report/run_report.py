@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 
 import h5py
@@ -27,7 +28,9 @@ from real_runs import BIN, SOFT, SOURCE, Runs  # noqa: E402
 
 sys.path.insert(0, os.path.join(SOURCE, "src", "report"))
 from lagamine_report import Run, short_lines  # noqa: E402
+from lagamine_report.cycle import Try  # noqa: E402
 from lagamine_report.picture import titled  # noqa: E402
+from lagamine_report.short import volume_by_meshes  # noqa: E402
 from lagamine_report.geometry import Triangles, element_curves, element_sizes  # noqa: E402
 from lagamine_report.tables import read_notes  # noqa: E402
 from lagamine_report.words import brief  # noqa: E402
@@ -528,6 +531,15 @@ class ReportTest(unittest.TestCase):
                     listing.write(f"WARNING: a\nstopped: {reason}\n  WARNING: a\n  WARNING: d\n\nresumed from deck.ckp.h5 after step 3\n"
                                   "WARNING: a\ndone: end of the scene\n  WARNING: e\n")
                 self.assertEqual(expected, read_notes(path)["warnings"])
+
+    def test_volume_of_a_cut(self):
+        """What a cut removes is no drift by new meshes, of those before it neither: 1000 of volume, of which 100 are cut off."""
+        rows = [Try(2, 1, 10, {"removed_volume": 0}, {"accepted": "y", "action": ""}, volume=1000.2, initial_volume=1000),
+                Try(3, 1, 20, {"removed_volume": 100}, {"accepted": "y", "action": ""}, volume=899, initial_volume=900),
+                Try(4, 1, 30, {"removed_volume": 0}, {"accepted": "y", "action": ""}, volume=900.9, initial_volume=900)]
+        drift = {"step": np.array([10, 20, 30]), "volume_drift": np.array([1.0e-4, -2.0e-3, 5.0e-4])}
+        run = types.SimpleNamespace(tries=rows, summary={"initial_volume": 900}, history={name: types.SimpleNamespace(values=values) for name, values in drift.items()})
+        self.assertAlmostEqual(1.0e-4 + 5.0e-4, volume_by_meshes(run), delta=1.0e-12)
 
     def test_order_of_dies(self):
         """Pilots are in the deck's order, HDF5 lists dies by name: the history's columns state which is which."""

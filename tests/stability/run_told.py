@@ -8,6 +8,7 @@ usage: run_told.py [-v] [-k]       -v prints every check, -k keeps the results
 - Dies that move and meet nothing, bodies that go through each other: in the summary.
 - A body that fills a closed die, which goes on: in the summary, with the change of volume of the closed form.
 - A body that passes the plane in which it is held: in the summary.
+- A first mesh that no row of REMSH replaces and that is worn by the end: in the summary; not one that hardly flows.
 - A body that its dies have let go, so that nothing holds it: in the summary; not one that still lies against a die. Bodies that hold one
   another are told together.
 - A steel without kinetics of austenite that is heated above Ac1: in the summary; not one that has them, nor one that only cools.
@@ -436,6 +437,27 @@ def passed_planes(checks):
         checks.that(len(told) == behind and all(words in text for text in told), f"{name}: told" if behind else f"{name}: nothing is told", told)
 
 
+def worn(checks):
+    """The first mesh of a contour whose REMSH has sizes alone: told where it has flowed far, with the error of its stress; not after a
+    small stroke, nor where a row is a limit."""
+    for name, way, rows, told_of in (("worn", "-9.", "   SIZE 2. 3.\n", 1), ("fresh", "-0.5", "   SIZE 2. 3.\n", 0),
+                                     ("limited", "-9.", "   SIZE 2. 3.\n   SCALED 0.2\n", 0)):
+        text = changed(checks, {**BODY, "1. -2.": "1. " + way})
+        path, out = os.path.join(checks.folder, name + ".lag"), os.path.join(checks.folder, name)
+        with open(path, "w", encoding="utf-8") as deck:
+            deck.write(text.replace("REMSH\n", "REMSH\n" + rows))
+        run = subprocess.run([LAGACYCLE, path, "--out", out], capture_output=True, text=True, check=False)
+        if not checks.that(run.returncode == 0, f"{name}: ends with 0", run.stderr + run.stdout):
+            continue
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as summary:
+            found = json.load(summary)
+        told = [warning["text"] for warning in warnings_in(found) if "no row of REMSH is a limit" in warning["text"]]
+        if not checks.that(len(told) == told_of, f"{name}: told {told_of} times", told) or told_of == 0:
+            continue
+        error = float(told[0].split("stress_error ")[1].split()[0])
+        checks.small(abs(100*error/found["error"]["stress_pct"] - 1), 1e-3, f"{name}: the error of the stress")
+
+
 def let_go(checks):
     """A billet between two dies, without supports: both go away; springs hold it."""
     free = {"FIXED  billet 1 Y\n": TABLE.replace("-1.", "0."), "FIXED  billet 4 X\n": "",
@@ -623,6 +645,7 @@ def main():
     crossed(checks)
     full(checks)
     passed_planes(checks)
+    worn(checks)
     let_go(checks)
     let_go_together(checks)
     heated(checks)

@@ -49,8 +49,9 @@ class Try:
     changes: List[Change] = field(default_factory=list)
     # What was found against what is allowed, as shares: of files that are there.
     limits: Dict[str, float] = field(default_factory=dict)
-    # Volume as the mesh began; NaN where it is not given.
+    # Volume as the mesh began, and that of its matter as the scene began (what cuts removed is no part of it); NaN where not given.
     volume: float = math.nan
+    initial_volume: float = math.nan
 
     @property
     def refused(self) -> bool:
@@ -87,7 +88,7 @@ def read_cycle(folder: str, name: str) -> List[Try]:
         stem = os.path.join(folder, f"{name}.g{row.generation:02d}")
         restart, steps = optional_object(f"{stem}.restart.json"), optional_object(f"{stem}.probation.json")
         row.limits = {key[:-len(LIMIT)]: number(value) for key, value in {**restart, **steps}.items() if key.endswith(LIMIT)}
-        row.volume = number(restart.get("volume_before"))
+        row.volume, row.initial_volume = number(restart.get("volume_before")), number(restart.get("initial_volume"))
         row.changes = read_changes(stem, restart)
     return tries
 

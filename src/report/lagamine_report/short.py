@@ -117,16 +117,16 @@ def penetration_checks(run: Run, values: Dict[str, float]) -> List[Check]:
 
 
 def volume_by_meshes(run: Run) -> float:
-    """Sum over the remeshings of what each changed the volume by, as a share of the first volume; NaN where it is not given."""
-    first = number(run.summary.get("initial_volume"))
+    """Sum over the remeshings of what each changed the volume by, as a share of the first volume of the matter that is there; NaN where
+    it is not given. A mesh that is cut is left out: what it leaves was pressed together otherwise than all."""
     steps, drift = run.history.get("step"), run.history.get("volume_drift")
     total, given = 0.0, False
     for row in new_meshes(run.tries):
-        if steps is None or drift is None or math.isnan(row.volume) or math.isnan(first):
+        if steps is None or drift is None or math.isnan(row.volume) or math.isnan(row.initial_volume) or row.numbers["removed_volume"] > 0:
             continue
         at = drift.values[steps.values == row.step]
         if len(at) == 1:
-            total, given = total + row.volume / first - (1 + float(at[0])), True
+            total, given = total + row.volume / row.initial_volume - (1 + float(at[0])), True
     return total if given else math.nan
 
 
