@@ -11,7 +11,7 @@ module exchange_schema
   public :: deck_source, deck_source_t, group_place, open_checkpoint, schema_name, schema_version, visit_deck_source
 
   !> Raised whenever a member changes its name, shape or meaning.
-  integer, parameter :: schema_version = 31
+  integer, parameter :: schema_version = 32
   character(len=*), parameter :: schema_name = 'lagamine checkpoint'
 
   !> The deck a checkpoint is made from.
