@@ -420,7 +420,8 @@ def told(checks):
     sound = ("STEEL s\nSOURCE 'round numbers'\nTEMPS AE1 727 AE3 780 AC1 740 AC3 800 BS 550 MS 300\nTTT BAINITE ZERO\n   350 10 100\n   540 10 100\nMARTEN BETA 0.011\n"
              "AUSTEN 1 1\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\n   E 2E5\n   SY TABLE 20 300 800 30\nEND\n")
     for old, new, words in (("", "", ""), ("MS 300", "MS 573", "Ms (573) is above Bs (550)"), ("AE1 727", "AE1 827", "Ae1 (827) is above Ae3 (780)"),
-                            ("   540", "   640", "the curve of BAINITE (640) is above Bs (550)"), ("BETA 0.011", "BETA 11", "BETA of MARTEN is 11 1/K, that of steels 0.002 to 0.2"),
+                            ("   540", "   640", "the curve of BAINITE (640) is above Bs (550)"), ("TEMPS", "COMPO C 0.0037 MN 0.0077 CR 0.0098\nTEMPS", "elements of COMPO are 0.0212 per cent in all, less than in any steel"),
+                            ("BETA 0.011", "BETA 11", "BETA of MARTEN is 11 1/K, that of steels 0.002 to 0.2"),
                             ("E 2E5", "E 200", "AUSTENITE yields at 1.5 of E at 20 degC, steels below 0.03: SY and E are in MPa"),
                             ("END", "PHASE MARTENSITE\n   LATENT 640\nEND", ""),
                             ("END", "PHASE MARTENSITE\n   LATENT 82000\nEND", "LATENT of MARTENSITE is 82000 MJ/m3 at 400 degC, that of steels below 3000"),
