@@ -225,7 +225,7 @@ contains
     class(visitor_t), intent(inout) :: visitor
     type(shape_errors_t), intent(inout) :: self
 
-    call visitor%member('known', self%known, kept)
+    call visitor%member('known', self%known, of_the_mesh)
     call visitor%member('share', self%share, kept, '-', low=0.0_wp)
     call visitor%member('displacement', self%displacement, kept, 'length', low=0.0_wp)
     call visitor%member('of_displacement', self%of_displacement, kept, 'length', low=0.0_wp)

@@ -148,7 +148,8 @@ contains
     integer :: g, c, d, b, k
 
     error = on_nodes(equations, answer)
-    whole = solution%fields(displacement_field)%value + on_nodes(equations, du)
+    ! since the start, over all meshes
+    whole = scene%mesh%coordinates + solution%fields(displacement_field)%value + on_nodes(equations, du) - scene%mesh%origin
     has_axis = scene%plane_state == axisymmetric
     cools = .false.
     do g = 1, size(scene%groups)
@@ -167,7 +168,7 @@ contains
       if (off <= max(errors%displacement, least)) cycle
       errors%displacement = off
       errors%growth = abs(growth)
-      call part_motion(scene%mesh%coordinates(:, nodes), whole(:, nodes), has_axis, errors%of_growth, errors%of_displacement)
+      call part_motion(scene%mesh%origin(:, nodes), whole(:, nodes), has_axis, errors%of_growth, errors%of_displacement)
     end do
     do c = 2, 3
       d = equations%dofs%fields(section_field)%number(c, 1)

@@ -7,14 +7,16 @@ usage: run_shape_error.py [-v] [-k] [--all]
 True errors are differences to a mesh 4 times finer or more: of the displacements at the nodes of the coarse mesh, without what moves, turns and
 grows the body evenly, or of the curvature of the section. With --all the whole table of the manual, of finer meshes (some minutes).
 """
+import glob
 import json
 import os
+import subprocess
 import sys
 
 sys.dont_write_bytecode = True
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), "patch")]
-from patch_support import SOURCE, Checks, Run, np  # noqa: E402
+from patch_support import LAGAMINE, LONGEST_RUN, SOURCE, Checks, Run, np  # noqa: E402
 import h5py  # noqa: E402
 
 FORGED = os.path.join(SOURCE, "decks", "forge_quench_temper", "forged.met")
@@ -180,6 +182,29 @@ def compare(checks, case, whole):
             checks.that(told[key] > LEAST*true, f"{what}, {n} elements: not told to be fine", (told, true))
 
 
+def on_new_mesh(checks):
+    """A ring that is quenched, and then gets a new mesh as it rests: what fronts have left is told still."""
+    text = ring(4, AUSTENITE, 15, 1).replace("KINEM SMALL", "KINEM LOG").replace("STOP 1000.", "STOP 200.")
+    held, moved = "FIXED POINT 20. 0. Y\n", text.index("CONVE")
+    text = text[:moved] + held + "OPERA quench\n" + text[moved:].replace(held, "")
+    text = text.replace("END\n", "OPERA rest\nCONVE p 2 H 1. TS 20.\nTHETA TRBDF2 TOL 2.\nSTRAT 1. 1.E-6 10. 14 9 0.25 2.\nSTOP 230.\nREMSH\n   TIMES 215.\nEND\n")
+    path = os.path.join(checks.folder, "chain.lag")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text.replace("'austenite.met'", f"'{os.path.join(checks.folder, 'austenite.met')}'"))
+    out = os.path.join(checks.folder, "chain")
+    done = subprocess.run([os.path.join(os.path.dirname(LAGAMINE), "lagacycle"), path, "--out", out], text=True, check=False, capture_output=True, timeout=LONGEST_RUN)
+    if not checks.that(done.returncode == 0, "quench and rest: done", done.stderr[-400:]):
+        return
+    with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)["accuracy"]
+    with open(glob.glob(os.path.join(out, "summary.*.json"))[0], encoding="utf-8") as file:
+        before = json.load(file)["accuracy"]["shape"]
+    checks.that(summary["cycle"]["meshes"] > 1, "quench and rest: a new mesh", summary["cycle"])
+    now = summary.get("shape", {"displacement": 0., "of_displacement": 0.})
+    checks.that(0.7 < now["displacement"]/before["displacement"] < 1.4, "quench and rest: told as before the new mesh", (before, now))
+    checks.that(abs(now["of_displacement"]/before["of_displacement"] - 1) < 0.1, "quench and rest: of the same shape", (before, now))
+
+
 def main():
     """The table; a body that cools evenly, and one that does not flow."""
     checks = Checks()
@@ -194,6 +219,7 @@ def main():
     checks.that(told["curvature"] == 0., "alike on both sides: no curvature", told)
     _, summary = run_of(checks, "elastic", strip(4, AUSTENITE, 10, 0.02, 0.01))
     checks.that("shape" not in summary["accuracy"], "what does not flow leaves no shape", summary["accuracy"])
+    on_new_mesh(checks)
     checks.end()
 
 
