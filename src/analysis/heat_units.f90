@@ -1,6 +1,7 @@
 !> Heat capacities and conductivities of a deck without steels whose unit is another than that of its lengths, times or stresses: as
 !> J/m3/K in a deck of mm.
 module heat_units
+  use fields, only: displacement_field
   use kinds, only: wp
   use law_api, only: find_parameter, heat_law, law_t, solid_law
   use scene, only: host_of, lacks_mesh, scene_t
@@ -10,9 +11,9 @@ module heat_units
   private
   public :: judge_heat_units
 
-  !> Heat that goes no further in the whole run than this share of the smallest element does nothing in it: of a blow of 1 ms, in
-  !> steel of elements of 1 mm, 0.2.
-  real(wp), parameter :: least_way = 0.01_wp
+  !> Heat that goes no further in the whole run than this share of the smallest element does nothing in it: the first beside
+  !> mechanics, as in a blow (of 1 ms, in steel of elements of 1 mm, 0.2), the second where heat is all there is.
+  real(wp), parameter :: least_way(2) = [0.01_wp, 0.1_wp]
   !> Heat capacity over Young's modulus: of metals 1e-5 to 1e-4, of plastics 1e-3, of soft rubber 2, in any unit [1/temperature].
   real(wp), parameter :: most_capacity = 10.0_wp
 
@@ -57,7 +58,7 @@ contains
         if (told(m)) cycle
         way = sqrt(4*material%values(find_parameter(law, 'LAMBDA'))/capacity*scene%strategy%end_time)
         side = smallest_side(scene, g)
-        if (way >= least_way*side) cycle
+        if (way >= least_way(merge(1, 2, scene%fields(displacement_field)%declared))*side) cycle
         told(m) = .true.
         call add(warnings, 'LAW '//material%name//': by LAMBDA and RHOC heat goes no further than '//to_text(way, 2) &
                  //' [length] in the whole run, the smallest element is '//to_text(side, 3)//' long: are both in the units ' &

@@ -437,6 +437,13 @@ def told(checks):
         if run.ok:
             lines = [line["text"] for line in summary(run)["warnings"] if "the steel s: " in line["text"]]
             checks.that(len(lines) == (words != "") and all(words in line and line.endswith("odd.met:1:7)") for line in lines), f"{run.name}: told", lines)
+    # heat capacities in other units, where nothing moves
+    for numbers, stop, told in (("50. 3.6E6", 100., True), ("5.E-5 3.6", 100., True), ("50. 3.6", 100., False), ("50. 3.6", 0.1, False)):
+        run = Run(checks, f"capacity-{numbers.replace(' ', '-')}-{stop:g}", "TITLE capacity\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   40. 0.   40. 10.   0. 10.\n"
+                  f"   8 1.   4 1.\nLAW hot HEAT\n   {numbers}\nSTART T 900.\nCONVE bar 2 H 1. TS 20.\nSTRAT {stop/10} {stop/1000} {stop/4} 4 3\nSTOP {stop}\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"] if "LAMBDA and RHOC heat goes no further" in line["text"]]
+            checks.that(len(lines) == told, f"{run.name}: told", lines)
     # cold phases above Ac3; heat in other units
     with open(os.path.join(checks.folder, "odd.met"), "w") as file:
         file.write(sound)
