@@ -105,7 +105,7 @@ contains
     real(wp), allocatable :: from(:, :), to(:, :)
     real(wp) :: farthest
     integer :: f, k, n, pass
-    logical :: has_errors, is_followed
+    logical :: has_errors, is_followed, has_spans
 
     n = 2
     do f = 1, size(before%fields)
@@ -115,6 +115,8 @@ contains
     if (has_errors) n = n + 1
     is_followed = size(before%heat%finer) > size(moved, 2) .and. size(after%heat%finer) > size(material)
     if (is_followed) n = n + 1
+    has_spans = any([(size(before%groups(f)%span) > 0, f=1, size(before%groups))])
+    if (has_spans) n = n + 1
     allocate (from(n, size(moved, 2)), to(n, size(material)))
     from(1:2, :) = old%mesh%origin
     do pass = 1, 2
@@ -141,6 +143,11 @@ contains
       if (is_followed) then
         if (pass == 1) from(n + 1, :) = before%heat%finer(:size(moved, 2))
         if (pass == 2) call place_finer(new, to(n + 1, :), after%heat%finer)
+        n = n + 1
+      end if
+      if (has_spans) then
+        if (pass == 1) from(n + 1, :) = spans_at_nodes(old, before, size(moved, 2))
+        if (pass == 2) call place_spans(new, to(n + 1, :), after)
       end if
       if (pass == 2) exit
       call carry_at_nodes(mesh, from, new%mesh%coordinates, material, options%outside, to, farthest, error)
@@ -191,6 +198,41 @@ contains
       end do
     end do
   end subroutine place_finer
+
+  !> What elements have held of fronts (strain_spans), at the nodes: the mean of those that meet there.
+  pure function spans_at_nodes(scene, solution, nnode) result(spans)
+    type(scene_t), intent(in) :: scene
+    type(solution_t), intent(in) :: solution
+    integer, intent(in) :: nnode
+    real(wp) :: spans(nnode)   !! [-]
+    integer :: number(nnode), g, e
+
+    spans = 0
+    number = 0
+    do g = 1, size(scene%groups)
+      do e = 1, size(solution%groups(g)%span)
+        associate (nodes => scene%groups(g)%connectivity(:8, e))
+          spans(nodes) = spans(nodes) + solution%groups(g)%span(e)
+          number(nodes) = number(nodes) + 1
+        end associate
+      end do
+    end do
+    spans = spans/max(number, 1)
+  end function spans_at_nodes
+
+  !> The mean of the corners in the new elements.
+  pure subroutine place_spans(scene, at_nodes, solution)
+    type(scene_t), intent(in) :: scene
+    real(wp), intent(in) :: at_nodes(:)   !! (nnode) [-]
+    type(solution_t), intent(inout) :: solution
+    integer :: g, e
+
+    do g = 1, size(scene%groups)
+      do e = 1, size(solution%groups(g)%span)
+        solution%groups(g)%span(e) = max(0.25_wp*sum(at_nodes(scene%groups(g)%connectivity(:4, e))), 0.0_wp)
+      end do
+    end do
+  end subroutine place_spans
 
   !> Errors of the temperatures in time, at middle nodes too where temperatures stand on corners.
   pure function errors_at_nodes(scene, solution) result(errors)

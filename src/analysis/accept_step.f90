@@ -24,6 +24,7 @@ module accept_step
   use solution, only: solution_t
   use space_error, only: follow_space_error
   use spring_check, only: has_body_springs
+  use strain_spans, only: follow_spans
   use step_outcome, only: outcome_t
   use text, only: to_text
   use vectors, only: length_of
@@ -63,6 +64,7 @@ contains
     call follow_space_error(scene, equations, solution, dt, outcome, error)
     if (allocated(error)) return
     call note_heat_step(outcome%heat, solution%heat)
+    if (outcome%shape%known) solution%shape%errors = outcome%shape
     call note_path_step(outcome%path, dt, solution%time + dt, solution%path)
     if (allocated(outcome%heat%phases)) then
       do g = 1, size(solution%groups)
@@ -105,6 +107,7 @@ contains
     if (.not. allocated(error)) call check(solution, totals, error)
     if (.not. allocated(error)) call book_fractions(scene, solution, error)
     call commit(scene, equations, solution)
+    call follow_spans(scene, equations, solution)
     call note_confinement(scene, equations%laws, solution%work%elastic - elastic_before, solution%external_work - outside_before, &
                           solution)
   end subroutine accept

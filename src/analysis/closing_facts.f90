@@ -30,6 +30,7 @@ module closing_facts
   use phases_in_space, only: errors_of_phases, phase_errors_t
   use remeshing, only: stress_error_of_all
   use scene, only: is_solid, scene_t
+  use shape_record, only: shape_errors_t
   use solution, only: solution_t
   use strategy, only: order_in_time
   use text, only: string_t
@@ -82,6 +83,8 @@ module closing_facts
     real(wp) :: stress_worst = 0.0_wp, strain_worst = 0.0_wp, seconds(ntask) = 0.0_wp
     !> Of a deck with ACCURACY that has come to its end.
     type(accuracy_t), allocatable :: accuracy
+    !> Errors in space of the shape that fronts of temperature and phases leave.
+    type(shape_errors_t) :: shape
   end type closing_t
 
 contains
@@ -123,6 +126,7 @@ contains
     closing%places_left_out = leaves_places_out(scene, equations)
     closing%heat_due = pending_temperature(scene, equations%laws, equations%drivers, solution)
     closing%heat_cost = 2.0_wp**(1.0_wp/order_in_time(scene%strategy))
+    closing%shape = solution%shape%errors
     closing%contact = size(scene%dies) > 0 .and. closing%space
     closing%depth = max(solution%worst_penetration, solution%worst_sample)
     closing%depth_share = max(solution%worst_penetration_ratio, solution%worst_sample_ratio)

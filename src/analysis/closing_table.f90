@@ -7,6 +7,8 @@ module closing_table
   use json_writer, only: json_t
   use kinds, only: wp
   use phases_in_space, only: phase_errors_t, words_of_phases
+  use shape_record, only: has_errors, is_shown, shape_errors_t
+  use coarse_shape, only: words_of_shape
   use text, only: percent, string_t, to_text
   implicit none
   private
@@ -42,6 +44,8 @@ contains
     else if (closing%warm) then
       call row('in space', 'heat: not estimated (temperatures of 8 nodes)', '')
     end if
+    if (has_errors(closing%shape)) call row('in space', words_of_shape(closing%shape), &
+                                      times(closing%space_cost)//' the time: twice the elements')
     without_heat = closing%warm .and. closing%heat_steps == 0
     if (closing%flows .and. .not. closing%path) call row('in time', 'path within steps: not estimated (NORMS)', '')
     if (closing%path) &
@@ -198,6 +202,7 @@ contains
       call json%add('half_costs', closing%space_cost)
       call json%end_object()
     end if
+    if (has_errors(closing%shape)) call add_shape(json, closing%shape, closing%space_cost)
     if (closing%contact) then
       call json%begin_object('contact')
       call json%add('depth', closing%depth)
@@ -207,6 +212,25 @@ contains
     if (allocated(closing%accuracy)) call add_accuracy(json, closing%accuracy)
     call json%end_object()
   end subroutine add_closing
+
+  !> Errors of the shape in space.
+  subroutine add_shape(json, shape, half_costs)
+    type(json_t), intent(inout) :: json
+    type(shape_errors_t), intent(in) :: shape
+    real(wp), intent(in) :: half_costs   !! over the time of this run
+
+    call json%begin_object('shape')
+    call json%add('share_in_element', shape%share)
+    if (.not. is_shown(shape)) call json%add('known', .false.)
+    call json%add('displacement', shape%displacement)
+    call json%add('of_displacement', shape%of_displacement)
+    call json%add('growth', shape%growth)
+    call json%add('of_growth', shape%of_growth)
+    call json%add('curvature', shape%curvature)
+    call json%add('of_curvature', shape%of_curvature)
+    call json%add('half_costs', half_costs)
+    call json%end_object()
+  end subroutine add_shape
 
   !> Errors of phases in space.
   subroutine add_phases(json, phases)

@@ -9,6 +9,7 @@ module heat_check
   use elem_weld_source, only: source_share
   use fields, only: displacement_field, field_t, find_field
   use hardness_check, only: judge_hardness
+  use heat_units, only: judge_heat_units
   use heat_contact_point, only: touching_still
   use isolated_bodies, only: judge_isolated
   use kinds, only: wp
@@ -62,6 +63,7 @@ contains
     end do
     call judge_zeros(scene, laws, warnings)
     call judge_units(scene, laws, warnings)
+    call judge_heat_units(scene, laws, warnings)
     if (.not. lacks_mesh(scene)) call judge_isolated(scene, laws, warnings)
     call judge_torch_powers(scene, laws, warnings)
     call judge_kinetics(scene, warnings)

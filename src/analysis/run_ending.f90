@@ -7,6 +7,7 @@ module run_ending
   use blas, only: blas_build, blas_core_name
   use closing_facts, only: close_cycle, close_run
   use coarse_heat, only: warn_of_coarse_heat
+  use coarse_shape, only: warn_of_coarse_shape
   use confinement, only: warn_of_confinement
   use cost_file, only: cost_t
   use crossed_bodies, only: warn_of_crossed_bodies
@@ -175,6 +176,7 @@ contains
       //'in them, any other buckles or necks (move nodes by a thousandth of the thickness to see how)')
     if (run%exit_code /= exit_done) return
     call warn_of_coarse_heat(scene, solution, warnings)
+    call warn_of_coarse_shape(solution, warnings)
     call warn_of_folds(scene, warnings)
     call warn_of_thinned_sheets(scene, solution, warnings)
     call warn_of_worn_mesh(scene, solution, warnings)

@@ -18,6 +18,8 @@ module steel_numbers
   real(wp), parameter :: largest_yield = 0.03_wp
   !> Bs by a formula of the composition may lie as much too low [K].
   real(wp), parameter :: scatter_of_formulas = 75.0_wp
+  !> Steels have more of the elements that are named [mass per cent]; those of low alloy, as shares, have less.
+  real(wp), parameter :: least_alloyed = 0.06_wp
   !> Where both are compared [degC].
   real(wp), parameter :: room_temperature = 20.0_wp
   !> Where heats of transformation are looked at [degC], and what none of steel comes near: 640 to 1 100 by L. Furlan et al. 2025
@@ -58,6 +60,9 @@ contains
     if (steel%ms > unknown_temperature .and. .not. (steel%beta > least_beta .and. steel%beta < most_beta)) &
       words = words//'; BETA of MARTEN is '//to_text(steel%beta, 4)//' 1/K, that of steels '//to_text(least_beta)//' to ' &
               //to_text(most_beta)
+    if (steel%composition%given .and. sum(steel%composition%w) < least_alloyed .and. count(steel%composition%w > 0) > 1) &
+      words = words//'; elements of COMPO are '//to_text(sum(steel%composition%w), 3)//' per cent in all, less than in any ' &
+              //'steel: they are in mass per cent, not shares'
     words = words//yields(steel)//transforms(steel)
     if (words == '') return
     words = 'the steel '//steel%name//': '//words(3:)

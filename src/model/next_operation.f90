@@ -145,6 +145,7 @@ contains
       end if
       if (size(before%groups(k)%space_error, 3) == size(after%groups(g)%space_error, 3)) &
         call take_state(old%groups(k), before%groups(k)%space_error, new%groups(g), after%groups(g)%space_error)
+      if (size(before%groups(k)%span) == size(after%groups(g)%span)) after%groups(g)%span = before%groups(k)%span
       after%groups(g)%trial = after%groups(g)%committed
       if (new%groups(g)%pairs == 0 .or. new%groups(g)%host > 0 .or. old%groups(k)%pairs == 0) cycle
       if (all(shape(after%pairs(new%groups(g)%pairs)%piece) == shape(before%pairs(old%groups(k)%pairs)%piece))) &

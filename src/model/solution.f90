@@ -17,6 +17,7 @@ module solution
   use remeshing, only: estimate_t
   use run_warnings, only: warning_t
   use scene, only: group_t, is_solid, role_body, role_second, scene_t, solid_elements
+  use shape_record, only: shape_record_t
   use state_variables, only: find_variable, total_components
   use work_books, only: work_t
   implicit none
@@ -36,6 +37,9 @@ module solution
     !> Displacements of its nodes when it came, of a body that was laid down (ASLEEP) where strains are small (2, node, element);
     !> not allocated, or of no elements, where it was there from the start [length].
     real(wp), allocatable :: laid(:, :, :)
+    !> Largest difference so far of the strain of temperature and phases across each element, of steels whose mechanics follow them
+    !> (strain_spans); of no elements in others [-].
+    real(wp), allocatable :: span(:)
   end type group_state_t
 
   type :: solution_t
@@ -116,6 +120,8 @@ module solution
     type(confinement_record_t) :: confinement
     !> Dies that few sides of elements have borne.
     type(narrow_record_t) :: narrow
+    !> Error of the shape that fronts of temperature and phases leave.
+    type(shape_record_t) :: shape
     !> Largest depth of a side in a die anywhere along it, and over what the side allows.
     real(wp) :: worst_sample = 0.0_wp, worst_sample_ratio = 0.0_wp
     !> Largest force on a die so far where meshes are replaced, or on one made of sides; per radian when axisymmetric.
@@ -177,6 +183,9 @@ contains
         if (nfiner > 0 .and. has_phases(scene, group) .and. find_variable(group%variables, 'stress') == 0) &
           n = size(group%connectivity, 2)
         allocate (state%space_error(size(state%committed, 1), npoint, n), source=0.0_wp)
+        n = 0
+        if (find_variable(group%variables, 'transformation_plasticity') > 0) n = size(group%connectivity, 2)
+        allocate (state%span(n), source=0.0_wp)
       end associate
     end do
     nsolid = 0

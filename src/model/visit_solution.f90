@@ -10,6 +10,7 @@ module visit_solution
   use pace_record, only: pace_t
   use path_record, only: path_record_t
   use run_warnings, only: warning_t
+  use shape_record, only: shape_errors_t, shape_record_t
   use solution, only: group_state_t, solution_t
   use visit_cuts, only: visit_cut_records
   use visit_estimate, only: visit_estimate_members
@@ -87,6 +88,9 @@ contains
     call visitor%enter('narrow')
     call visit_narrow(visitor, self%narrow)
     call visitor%leave('narrow')
+    call visitor%enter('shape')
+    call visit_shape(visitor, self%shape)
+    call visitor%leave('shape')
     call visitor%enter('path')
     call visit_path_record(visitor, self%path)
     call visitor%leave('path')
@@ -205,6 +209,32 @@ contains
     call visitor%member('error', self%error, kept, '-', low=0.0_wp)
   end subroutine visit_narrow
 
+  subroutine visit_shape(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(shape_record_t), intent(inout) :: self
+
+    call visitor%member('followed', self%followed, kept)
+    call visitor%member('coldest', self%coldest, kept, 'temperature')
+    call visitor%member('hottest', self%hottest, kept, 'temperature')
+    call visitor%enter('errors')
+    call visit_shape_errors(visitor, self%errors)
+    call visitor%leave('errors')
+  end subroutine visit_shape
+
+  subroutine visit_shape_errors(visitor, self)
+    class(visitor_t), intent(inout) :: visitor
+    type(shape_errors_t), intent(inout) :: self
+
+    call visitor%member('known', self%known, of_the_mesh)
+    call visitor%member('share', self%share, kept, '-', low=0.0_wp)
+    call visitor%member('displacement', self%displacement, kept, 'length', low=0.0_wp)
+    call visitor%member('of_displacement', self%of_displacement, kept, 'length', low=0.0_wp)
+    call visitor%member('growth', self%growth, kept, '-', low=0.0_wp)
+    call visitor%member('of_growth', self%of_growth, kept, '-')
+    call visitor%member('curvature', self%curvature, kept, '1/length', low=0.0_wp)
+    call visitor%member('of_curvature', self%of_curvature, kept, '1/length', low=0.0_wp)
+  end subroutine visit_shape_errors
+
   subroutine visit_path_record(visitor, self)
     class(visitor_t), intent(inout) :: visitor
     type(path_record_t), intent(inout) :: self
@@ -279,6 +309,7 @@ contains
     call visitor%member('state', self%committed, by_variable, 'component, point, element')
     call visitor%member('path_error', self%error, of_the_mesh, 'component, point, element')
     call visitor%member('space_error', self%space_error, of_the_mesh, 'component, point, element')
+    call visitor%member('span', self%span, of_the_mesh, 'element', '-')
     call visitor%member('laid', self%laid, of_the_mesh, 'component, node, element', 'length')
     call visitor%derived('trial', 'every step begins it as the committed state')
   end subroutine visit_group_state

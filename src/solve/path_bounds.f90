@@ -18,6 +18,7 @@ module path_bounds
   use path_states, only: has_path, has_stress, on_nodes
   use path_stress, only: carry_errors_in_quiet
   use scene, only: scene_t
+  use shape_error, only: find_shape_error
   use solution, only: solution_t
   use state_variables, only: find_variable
   use step_outcome, only: outcome_t
@@ -55,6 +56,7 @@ contains
 
     if (.not. outcome%converged) return
     last = .not. solution%time + dt < scene%strategy%end_time*(1 - 64*eps)
+    if (last) call find_shape_error(scene, equations, solution, dt, at_hand, outcome)
     if (.not. scene%follows_path) then
       if (last) call find_stress_of_heat(scene, equations, solution, dt, at_hand, outcome)
       return

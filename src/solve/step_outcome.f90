@@ -6,6 +6,7 @@ module step_outcome
   use iteration_history, only: iteration_t
   use kinds, only: wp
   use path_record, only: path_step_t
+  use shape_record, only: shape_errors_t
   implicit none
   private
   public :: outcome_t, set_cause, set_solver_cause
@@ -40,6 +41,8 @@ module step_outcome
     type(heat_step_t) :: heat
     !> Path within the step.
     type(path_step_t) :: path
+    !> Error in space of the shape, of the last step of a run.
+    type(shape_errors_t) :: shape
     !> Motion of every unknown (ndof).
     real(wp), allocatable :: du(:)
     !> Residual force of every unknown where a failed step stopped (ndof).

@@ -420,7 +420,8 @@ def told(checks):
     sound = ("STEEL s\nSOURCE 'round numbers'\nTEMPS AE1 727 AE3 780 AC1 740 AC3 800 BS 550 MS 300\nTTT BAINITE ZERO\n   350 10 100\n   540 10 100\nMARTEN BETA 0.011\n"
              "AUSTEN 1 1\nPHASE ALL\n   LAMBDA 30\n   RHOC 4.5\n   E 2E5\n   SY TABLE 20 300 800 30\nEND\n")
     for old, new, words in (("", "", ""), ("MS 300", "MS 573", "Ms (573) is above Bs (550)"), ("AE1 727", "AE1 827", "Ae1 (827) is above Ae3 (780)"),
-                            ("   540", "   640", "the curve of BAINITE (640) is above Bs (550)"), ("BETA 0.011", "BETA 11", "BETA of MARTEN is 11 1/K, that of steels 0.002 to 0.2"),
+                            ("   540", "   640", "the curve of BAINITE (640) is above Bs (550)"), ("TEMPS", "COMPO C 0.0037 MN 0.0077 CR 0.0098\nTEMPS", "elements of COMPO are 0.0212 per cent in all, less than in any steel"),
+                            ("BETA 0.011", "BETA 11", "BETA of MARTEN is 11 1/K, that of steels 0.002 to 0.2"),
                             ("E 2E5", "E 200", "AUSTENITE yields at 1.5 of E at 20 degC, steels below 0.03: SY and E are in MPa"),
                             ("END", "PHASE MARTENSITE\n   LATENT 640\nEND", ""),
                             ("END", "PHASE MARTENSITE\n   LATENT 82000\nEND", "LATENT of MARTENSITE is 82000 MJ/m3 at 400 degC, that of steels below 3000"),
@@ -436,6 +437,13 @@ def told(checks):
         if run.ok:
             lines = [line["text"] for line in summary(run)["warnings"] if "the steel s: " in line["text"]]
             checks.that(len(lines) == (words != "") and all(words in line and line.endswith("odd.met:1:7)") for line in lines), f"{run.name}: told", lines)
+    # heat capacities in other units, where nothing moves
+    for numbers, stop, told in (("50. 3.6E6", 100., True), ("5.E-5 3.6", 100., True), ("50. 3.6", 100., False), ("50. 3.6", 0.1, False)):
+        run = Run(checks, f"capacity-{numbers.replace(' ', '-')}-{stop:g}", "TITLE capacity\nSTATE PLSTN\nKINEM SMALL\nBLOCK bar PL8TM 4 hot BILINEAR\n   0. 0.   40. 0.   40. 10.   0. 10.\n"
+                  f"   8 1.   4 1.\nLAW hot HEAT\n   {numbers}\nSTART T 900.\nCONVE bar 2 H 1. TS 20.\nSTRAT {stop/10} {stop/1000} {stop/4} 4 3\nSTOP {stop}\nEND\n")
+        if run.ok:
+            lines = [line["text"] for line in summary(run)["warnings"] if "LAMBDA and RHOC heat goes no further" in line["text"]]
+            checks.that(len(lines) == told, f"{run.name}: told", lines)
     # cold phases above Ac3; heat in other units
     with open(os.path.join(checks.folder, "odd.met"), "w") as file:
         file.write(sound)

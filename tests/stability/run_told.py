@@ -98,6 +98,8 @@ WRONG["expansion in millionths"] = ({**HEATED, "steel EPLA": "steel ELATH", "200
 # Another block beside the billet, held as it is; and what joins it.
 BESIDE = "BLOCK  beside PL8LS 4 steel\n   10. 0.   20. 0.   20. 15.   10. 15.\n   2 1.   3 1.\nFIXED  beside 1 Y\nCNT2D  beside 3 upper -3 rough\n"
 WRONG["blocks that only touch"] = ({"LAW    rough": BESIDE + "LAW    rough"}, "billet and beside have nodes at 7 places in common, from 10 0 to 10 15")
+WRONG["heat capacity in SI"] = ({**HEATED, "steel EPLA": "steel ELATH", "200000. 0.3\n": "200000. 0.3 1.E-5\n", "   LINEAR 700. 300.\n": "", "LIC    press\n": "", "MOVE   upper Y press\n":
+                                HEATED["MOVE   upper Y press\n"].replace("50. 3.6", "50. 3.6E6")}, "RHOC is 18 times E of LAW steel")
 WRONG["welded by EPLA"] = (HEATED, "none of their laws expands")
 # A hot body: temperatures make no strain, and its die moves away.
 HOT = {"FIXED  billet 1 Y\n": "FIXED  billet 1 Y\nADDEL  billet PL8TM hot\nLAW    hot HEAT\n   50. 3.6\nSTART  T 900.\nCONVE  billet 2 H 1. TS 0.\n"}

@@ -11,6 +11,8 @@ ROWS: List[Tuple[str, str, Dict[str, str]]] = [
     ("space", "in space", {"stress_pct": "stress {} %", "strain_pct": "strain {} %"}),
     ("heat_space", "in space, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "mean_largest": "{} in the mean square",
                                              "fraction": "a phase by these temperatures {} at most", "fraction_mean": "{} in the mean square", "hardness": "hardness {} HV at most"}),
+    ("shape", "in space, of the shape that fronts leave", {"displacement": "up to {}", "of_displacement": "of {} [length]", "curvature": "curvature of the section {}",
+                                                           "of_curvature": "of {} [1/length]"}),
     ("path", "in time, by the path within steps", {"motion_pct": "motion {} % in sum", "stress_pct": "stress {} % at the end"}),
     ("heat", "in time, of heat", {"end": "{} [temperature] at the end", "largest": "at most {}", "stress_pct": "stress {} %", "work_not_heat": "{} behind the work (SOLVE)"}),
     ("contact", "at contact", {"depth": "depth {} [length]", "over_allowed": "{} of the allowed"}),
@@ -18,7 +20,7 @@ ROWS: List[Tuple[str, str, Dict[str, str]]] = [
 # Words for the stress where `stress_known` is false.
 HIDDEN = "stress hidden by its error: no estimate above 100 %"
 UNKNOWN = {"space": HIDDEN, "path": "stress at least {} % (at this motion)", "heat": HIDDEN}
-HOW = {"space": "twice the elements", "heat_space": "twice the elements", "path": "shorter steps", "heat": "shorter steps"}
+HOW = {"space": "twice the elements", "shape": "twice the elements", "heat_space": "twice the elements", "path": "shorter steps", "heat": "shorter steps"}
 
 
 def accuracy_section(run: Run) -> Sections:
@@ -34,6 +36,8 @@ def accuracy_section(run: Run) -> Sections:
         if entry.get("stress_known") is False and name in UNKNOWN:
             words = {**words, "stress_pct": UNKNOWN[name]}
         found = ", ".join(text.format(brief(number(entry[key]), 3)) for key, text in words.items() if key in entry)
+        if name == "shape" and entry.get("known") is False:
+            found = f"not known: an element holds {brief(number(entry.get('share_in_element')), 2)} of a front"
         if entry.get("stress_without_heat") is True:
             found += " (without that of temperatures)"
         if entry.get("contact_places_known") is False:
