@@ -38,7 +38,7 @@ UNIFORM = [(6, 9), (9, 14), (12, 18), (16, 24), (24, 36), (32, 48), (48, 72)]
 # First mesh, smallest and largest size, error of stress that asks for a new mesh.
 REMESHED = [((8, 12), 0.8, 2.0, 0.1), ((10, 15), 0.6, 1.6, 0.1), ((12, 18), 0.5, 1.25, 0.1), ((12, 18), 0.4, 2.0, 0.1), ((16, 24), 0.2, 1.0, 0.1)]
 # Those that begin with the contour: smallest and largest size and error of stress; none: REMSH alone.
-OUTLINED = [(0.4, 1.5, 0.06), (0.35, 1.2, 0.07), (0.35, 1.5, 0.06), (0.3, 1.5, 0.06), None]
+OUTLINED = [(0.5, 2.0, 0.1), (0.4, 2.0, 0.1), (0.35, 2.0, 0.1), (0.4, 1.5, 0.06), (0.35, 1.2, 0.07), (0.35, 1.5, 0.06), (0.3, 1.5, 0.06), None]
 CONTOUR = ("BODY   billet  PL8LS 4 steel\n   SEGM   0. 0.   10. 0.\n   SEGM   10. 0.   10. 15.\n   SEGM   10. 15.   0. 15.\n   SEGM   0. 15.   0. 0.\n")
 MEASURES = {"error": "root mean square", "largest": "largest difference"}
 PICTURE = os.path.join(HERE, "remesh.svg")
@@ -193,7 +193,7 @@ def main():
     failed = []
     cycles = [(f"{first[0]}x{first[1]}, {smallest} to {largest}", first, remesh_deck(k, first, smallest, largest, error))
               for k, (first, smallest, largest, error) in enumerate(REMESHED)]
-    cycles += [(f"contour, {sizes[0]} to {sizes[1]}" if sizes else "contour, `REMSH` alone", None, outlined_deck(k, sizes)) for k, sizes in enumerate(OUTLINED)]
+    cycles += [(f"contour, {sizes[0]} to {sizes[1]}, {100 * sizes[2]:g} %" if sizes else "contour, `REMSH` alone", None, outlined_deck(k, sizes)) for k, sizes in enumerate(OUTLINED)]
     for name, first, deck in cycles:
         out = deck[:-len(".lag")]
         row, others = compared(uniform, out, first, min(run("lagacycle", deck, out) for _ in range(repeat)), reference)
